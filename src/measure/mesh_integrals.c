@@ -10,24 +10,15 @@
 
 enum { RUN = 1024 /* triangles that are summed by themselves, so that rounding stays small */ };
 
-static double area_of(const double corner[3][3])
-{
-    csg_vec3 a = csg_vec3_make(corner[0][0], corner[0][1], corner[0][2]);
-    csg_vec3 b = csg_vec3_make(corner[1][0], corner[1][1], corner[1][2]);
-    csg_vec3 c = csg_vec3_make(corner[2][0], corner[2][1], corner[2][2]);
-    return 0.5 * csg_vec3_norm(csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a)));
-}
-
 void csg_mesh_integrals(const csgm_mesh_view *mesh, csg_box box, csg_vec3 center,
-                        double low[CSG_INTEGRALS], double high[CSG_INTEGRALS], csgm_interval *area)
+                        double low[CSG_INTEGRALS], double high[CSG_INTEGRALS])
 {
     static const double TERMS = RUN + 64;
     static const double ORIGIN[3] = {0, 0, 0};
     const double at[3] = {center.x, center.y, center.z};
-    double sum[CSG_INTEGRALS] = {0}, area_sum = 0, sizes = 0,
-           reach = 0.51 * csg_vec3_norm(csg_box_size(box));
+    double sum[CSG_INTEGRALS] = {0}, sizes = 0, reach = 0.51 * csg_vec3_norm(csg_box_size(box));
     for (uint64_t first = 0; first < mesh->triangle_count; first += RUN) {
-        double run[CSG_INTEGRALS] = {0}, area_run = 0;
+        double run[CSG_INTEGRALS] = {0};
         for (uint64_t t = first; t < mesh->triangle_count && t < first + RUN; t++) {
             double corner[3][3], before = run[0];
             for (int i = 0; i < 3; i++)
@@ -37,12 +28,10 @@ void csg_mesh_integrals(const csgm_mesh_view *mesh, csg_box box, csg_vec3 center
                             ->positions[3 * (size_t)mesh->indices[3 * t + (size_t)i] + (size_t)k] -
                         at[k];
             csg_integrals_add_tetrahedron(run, ORIGIN, corner[0], corner[1], corner[2]);
-            area_run += area_of((const double(*)[3])corner);
             sizes += fabs(run[0] - before) + 0x1p-50 * reach * reach * reach;
         }
         for (int n = 0; n < CSG_INTEGRALS; n++)
             sum[n] += run[n];
-        area_sum += area_run;
     }
     double runs = (double)(mesh->triangle_count / RUN + 1);
     double slack = (TERMS + runs) * 0x1p-52 * sizes;
@@ -52,7 +41,4 @@ void csg_mesh_integrals(const csgm_mesh_view *mesh, csg_box box, csg_vec3 center
         low[n] = sum[n] - slack * size;
         high[n] = sum[n] + slack * size;
     }
-    double area_slack = (TERMS + runs) * 0x1p-52 * area_sum;
-    area_slack += (double)mesh->triangle_count * 0x1p-50 * reach * reach;
-    *area = (csgm_interval){fmax(area_sum - area_slack, 0), area_sum + area_slack};
 }
