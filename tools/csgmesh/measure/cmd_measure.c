@@ -56,8 +56,8 @@ static bool find_names(subject *s)
 {
     size_t count = (size_t)s->mesh.part_count;
     const char *name;
-    for (; s->field && csgm_field_part(s->field, count, &name); count++)
-        ;
+    while (s->field && csgm_field_part(s->field, count, &name))
+        count++;
     s->names = calloc(count + 1, sizeof *s->names);
     for (size_t i = 0; s->names && i < count; i++) {
         if (s->field)
