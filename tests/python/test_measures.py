@@ -67,5 +67,9 @@ def test_clearances(folder):
         csgmesh.clear("cube(")
     with pytest.raises(csgmesh.SceneError):
         csgmesh.clear("cube(1);")
+    with pytest.raises(csgmesh.SceneError, match="made in"):
+        csgmesh.clear(csgmesh.cube(1).translate("nowhere"))
+    with pytest.raises(ValueError, match="define"):
+        csgmesh.clear(BOXES, poses=[{"no name": 1}])
     with pytest.raises(TypeError, match="Scene"):
         csgmesh.clear(csgmesh.parse(BOXES, define={"t": 9}))

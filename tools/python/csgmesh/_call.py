@@ -49,7 +49,7 @@ def format_bytes(name: Optional[str]) -> bytes:
 
 # ---- options
 
-def _define(given: Any) -> dict[bytes, bytes]:
+def defines(given: Any) -> dict[bytes, bytes]:
     if not isinstance(given, Mapping):
         raise TypeError(f"define must be a dict of names and values, not {type(given).__name__}")
     for name in given:
@@ -112,7 +112,7 @@ def _texts(given: Any) -> list[Any]:
     return [_text(word) for word in _words(given)]
 
 
-_CONVERT = {"define": _define, "include": _include, "openscad_version": _level, "comment": _text, "metadata": _metadata, "levels": _levels, "background": _color,
+_CONVERT = {"define": defines, "include": _include, "openscad_version": _level, "comment": _text, "metadata": _metadata, "levels": _levels, "background": _color,
             "ignore": _words, "part": _text, "parts": _texts, "parameter_set": _text, "parameter_file": lambda path: path_bytes(path, "parameter_file")}
 
 

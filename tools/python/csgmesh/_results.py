@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _core, _errors, _page
-from ._call import Call, existing, format_bytes, path_bytes, split
+from ._call import Call, defines, existing, format_bytes, path_bytes, split
 from ._errors import Diagnostic
 from ._solid import SolidBase
 
@@ -386,18 +386,23 @@ def check(source: Source, **options: Unpack[SceneOptions]) -> list[Diagnostic]:
     """What is wrong with a scene's text, a file (a pathlib.Path) or a solid, as csgmesh check says it: all findings, and none
     of them raises or warns. Quicker than reading it, as nothing is made that nobody asks about."""
     call = Call("check()", options, "scene")
-    call.of["scene"]["only_check"] = True
-    how, origin = call.of["scene"], None
-    if isinstance(source, SolidBase):
-        origin = source._origin
-        _core.parse(call.run, str(source).encode("utf-8", "surrogatepass"), b"solid", how)
-    elif isinstance(source, str):
-        _core.parse(call.run, source.encode("utf-8", "surrogatepass"), b"text", how)
-    elif isinstance(source, os.PathLike):
-        _core.load(call.run, existing(source), how)
-    else:
+    _read_in(call, source, {**call.of["scene"], "only_check": True})
+    return _errors.diagnostics_of(call.run.findings, _origin_in(source))
+
+
+def _read_in(call: Call, source: Any, how: dict[str, Any]) -> tuple[str, Any]:
+    """A scene in the call's own run, as _core returns it: nothing raises or warns."""
+    if isinstance(source, os.PathLike):
+        return _core.load(call.run, existing(source), how)
+    if not isinstance(source, (str, SolidBase)):
         raise TypeError(f"a scene's text, a path or a solid is wanted, not {type(source).__name__}")
-    return _errors.diagnostics_of(call.run.findings, origin)
+    name = b"solid" if isinstance(source, SolidBase) else b"text"
+    return _core.parse(call.run, str(source).encode("utf-8", "surrogatepass"), name, how)
+
+
+def _origin_in(source: Any) -> Optional[_errors.Origin]:
+    """Where in Python a solid was made; None of others."""
+    return source._origin if isinstance(source, SolidBase) else None
 
 
 def mesh(source: Source, **options: Unpack[SceneMeshOptions]) -> Mesh:
@@ -648,34 +653,23 @@ def clear(source: Union[str, "os.PathLike[str]", SolidBase], poses: Sequence[Map
     each pair. poses: values for assignments at the top of the text, as of define, one dict for each pose. As `csgmesh clear`
     (docs/clear.md)."""
     call = Call("clear()", options, "scene", "clear")
-    given = options.get("define") or {}
-    core = _needed(call, _core.begin_clear(call.run, call.of["clear"]))
+    origin = _origin_in(source)
+
+    def needed(answer: tuple[str, Any]) -> Any:
+        """Findings of what has not failed are settled at the end."""
+        return answer[1] if answer[0] == "OK" else call.settle(answer, origin)[0]
+
+    given = call.of["scene"].get("define") or {}
+    core = needed(_core.begin_clear(call.run, call.of["clear"]))
     for pose in poses:
-        how = Call("clear()", {"define": {**given, **pose}}, "scene").of["scene"]
-        scene = _read_in(call, source, {**call.of["scene"], **how})
+        scene = needed(_read_in(call, source, {**call.of["scene"], "define": {**given, **defines(pose)}}))
         answer = _core.add_pose(call.run, core, scene)
         if answer[0] == "ERR_ARGUMENT":
             there = ", ".join(repr(name) for name in core.parts())
             raise ValueError(f"parts: a part that is asked for is not there, only {there}")
-        if answer[0] != "OK":
-            call.settle(answer)
-    call.settle(("OK", None))
+        needed(answer)
+    call.settle(("OK", None), origin)
     return [Clearance(**pair) for pair in core.pairs()]
-
-
-def _needed(call: Call, answer: tuple[str, Any]) -> Any:
-    """A result on the way to another: findings are settled at the end."""
-    return answer[1] if answer[0] == "OK" else call.settle(answer)[0]
-
-
-def _read_in(call: Call, source: Any, how: dict[str, Any]) -> Any:
-    """In the call's own run, as poses must be."""
-    if isinstance(source, os.PathLike):
-        return _needed(call, _core.load(call.run, existing(source), how))
-    if not isinstance(source, (str, SolidBase)):
-        raise TypeError(f"a scene's text, a path or a solid is wanted, not {type(source).__name__}")
-    name = b"solid" if isinstance(source, SolidBase) else b"text"
-    return _needed(call, _core.parse(call.run, str(source).encode("utf-8", "surrogatepass"), name, how))
 
 
 def _document() -> None:
