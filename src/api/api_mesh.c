@@ -127,10 +127,11 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats found = csgm_mesh_stats_default();
     csg_mesh_counts made = {0};
-    if (joined.normals == CSGM_NORMALS_CREASE &&
-        !(csg_format_traits(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format) &
-          CSGM_KEEPS_CREASES))
+    uint32_t traits =
+        csg_format_traits(format == CSGM_FORMAT_AUTO ? csg_format_from_path(path) : format);
+    if (joined.normals == CSGM_NORMALS_CREASE && !(traits & CSGM_KEEPS_CREASES))
         joined.normals = CSGM_NORMALS_VERTEX;
+    joined.colors = joined.colors && (traits & (CSGM_KEEPS_COLORS | CSGM_KEEPS_MATERIALS)) != 0;
     options = &joined;
     write_options = &own;
     bool streams =

@@ -70,8 +70,11 @@ class Diff(diff_support.DiffTest):
         self.assert_status(self.run_in("s.txt", "-q", "--unit", "mm", "-o", "u.glb", "-e", "0.1"), 0)
         self.diff(0, "u.glb", "s.txt", "--unit", "mm", "-e", "0.1")
         self.diff(0, "u.glb", "s.txt", "--unit", "in", "-e", "0.1") # the file says what its unit was
-        self.assert_status(self.run_in("s.txt", "-q", "-o", "q.ply", "--quality", "draft"), 0)
-        self.diff(0, "q.ply", "s.txt", "--quality", "draft")
+        for extension in ("ply", "stl"):
+            self.assert_status(self.run_in("s.txt", "-q", "-o", "q." + extension, "--quality", "draft"), 0)
+            self.diff(0, "q." + extension, "s.txt", "--quality", "draft")
+        self.assert_status(self.run_in("s.txt", "-q", "-o", "both.stl", "-o", "both.ply", "--quality", "draft"), 0)
+        self.diff(0, "both.stl", "s.txt", "--quality", "draft") # colours kept its triangles apart
         self.assert_status(self.run_in("s.txt", "-q", "-r", "24", "-o", "v.glb", "--normals", "vertex"), 0)
         self.assertIn(b"normals differ", self.diff(1, "v.glb", "s.txt", "-r", "24", "--normals", "crease").stdout)
         self.assertIn(b"colours differ", self.diff(1, "s.ply", "s.txt", "-r", "24", "--colors", "none").stdout)

@@ -32,6 +32,11 @@ def test_write_has_the_bytes_of_the_command_line(folder, format_name):
     made = csgmesh.write(pathlib.Path("s.txt"), name, resolution=24)
     assert written() == wanted
     assert made.triangles > 100 and made.stats.cells != (0, 0, 0)
+    # cells that follow the shape
+    csgmesh_program("s.txt", "-o", name, "--quality", "draft", cwd=folder)
+    wanted = written()
+    csgmesh.write(pathlib.Path("s.txt"), name, quality="draft")
+    assert written() == wanted
     # through a mesh in memory
     csgmesh_program("s.txt", "-o", name, "-r", 24, "--normals", "vertex", cwd=folder)
     wanted = written()

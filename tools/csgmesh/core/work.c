@@ -76,7 +76,7 @@ static csgm_mesh_options mesh_options(cli_app *app, const cli_work *work)
     mesh.improve = options->improve;
     mesh.normals = work->normals ? *work->normals : cli_outputs_normals(options);
     mesh.features = (csgm_features)options->features; /* the values stand in the enum's order */
-    mesh.colors = cli_outputs_colors(options);
+    mesh.colors = cli_outputs_colors(options) && !work->drops_looks;
     mesh.prune = !options->no_prune;
     mesh.certify = options->certify || options->certify_size > 0;
     mesh.certify_size = options->certify_size;

@@ -17,6 +17,7 @@ typedef struct cli_work {
     size_t level_count;
     bool is_leveled; /* they are made */
     double compile_s;
+    bool drops_looks;            /* the mesh is for a format that has none */
     const csgm_normals *normals; /* instead of those that the outputs want, NULL: none */
     double
         within; /* > 0: the tolerance of cells that follow the shape, instead of their quality's */

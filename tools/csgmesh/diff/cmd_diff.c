@@ -185,15 +185,22 @@ static void warn(cli_app *app, const csgm_diff_report *r)
     hint_at_units(app, r);
 }
 
-/* A scene whose normals alone differ from a file's is tried with the other kind, too. */
+/* A scene that differs from a file is meshed as the file may have been made, too: with the other
+ * kind of normals, where these alone differ, or with colours that the file cannot show. */
+static bool mesh_otherwise(cli_app *app, diff_side *side, uint32_t reasons, int *status)
+{
+    return reasons == CSGM_DIFF_REASON_NORMALS
+               ? diff_side_mesh_otherwise(app, side, status)
+               : reasons && diff_side_mesh_with_looks(app, side, status);
+}
+
 static int compare_meshes(cli_app *app, const csgm_diff_options *options, diff_side sides[2],
                           csgm_diff **diff)
 {
     int status = cli_exit_status(
         csgm_diff_meshes(app->context, &sides[0].view, &sides[1].view, options, diff));
     for (int i = 0; i < 2 && status == CLI_DONE; i++) {
-        if (csgm_diff_get_report(*diff)->reasons != CSGM_DIFF_REASON_NORMALS ||
-            !diff_side_mesh_otherwise(app, &sides[i], &status))
+        if (!mesh_otherwise(app, &sides[i], csgm_diff_get_report(*diff)->reasons, &status))
             continue;
         csgm_diff_destroy(*diff);
         *diff = NULL;

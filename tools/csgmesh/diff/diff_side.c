@@ -99,7 +99,16 @@ static int open_scene(cli_app *app, diff_side *side, const char *other)
                     : creases                               ? CSGM_NORMALS_CREASE
                                                             : CSGM_NORMALS_VERTEX;
     side->compression = compression_of(format, other);
+    side->work.drops_looks = side->as != CSGM_FORMAT_AUTO && !cli_format_keeps_looks(side->as);
     return CLI_DONE;
+}
+
+static int mesh_again(cli_app *app, diff_side *side)
+{
+    csgm_mesh_destroy(side->mesh);
+    csgm_mesh_destroy(side->work.mesh);
+    side->mesh = side->work.mesh = NULL;
+    return mesh_scene(app, side);
 }
 
 bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
@@ -107,11 +116,18 @@ bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status)
     if (!side->work.scene || side->as == CSGM_FORMAT_AUTO || side->normals != CSGM_NORMALS_CREASE ||
         app->options->given[CLI_OPTION_normals])
         return false;
-    csgm_mesh_destroy(side->mesh);
-    csgm_mesh_destroy(side->work.mesh);
-    side->mesh = side->work.mesh = NULL;
     side->normals = CSGM_NORMALS_VERTEX;
-    *status = mesh_scene(app, side);
+    *status = mesh_again(app, side);
+    return true;
+}
+
+bool diff_side_mesh_with_looks(cli_app *app, diff_side *side, int *status)
+{
+    if (!side->work.scene || !side->work.drops_looks ||
+        !csgm_scene_get_info(side->work.scene).has_colors)
+        return false;
+    side->work.drops_looks = false;
+    *status = mesh_again(app, side);
     return true;
 }
 

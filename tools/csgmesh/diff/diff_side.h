@@ -34,6 +34,9 @@ int diff_side_mesh(cli_app *app, diff_side *side);
 /* Meshes a scene again, as a file with one normal for each place. false: there is nothing else that
  * the file could have been. *status: an exit status. */
 bool diff_side_mesh_otherwise(cli_app *app, diff_side *side, int *status);
+/* The same with colours, for a file of a format without them: they keep triangles from being
+ * thinned out across their borders, so a file that was made beside one with colours has others. */
+bool diff_side_mesh_with_looks(cli_app *app, diff_side *side, int *status);
 void diff_side_release(diff_side *side);
 /* Mesh files of one format that say the same wherever they lie. */
 bool diff_same_bytes(const char *a, const char *b);

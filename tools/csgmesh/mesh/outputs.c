@@ -212,13 +212,18 @@ csgm_normals cli_outputs_normals(const cli_options *options)
     return CSGM_NORMALS_VERTEX;
 }
 
+bool cli_format_keeps_looks(csgm_format format)
+{
+    return (csgm_format_traits(format) & (CSGM_KEEPS_COLORS | CSGM_KEEPS_MATERIALS)) != 0;
+}
+
 bool cli_outputs_colors(const cli_options *options)
 {
     bool asked = !options->outputs.count;
     for (size_t i = 0; i < options->outputs.count; i++) {
         csgm_format format = cli_outputs_format(options, i);
-        asked |= format == CSGM_FORMAT_AUTO || /* a picture, for one */
-                 (csgm_format_traits(format) & (CSGM_KEEPS_COLORS | CSGM_KEEPS_MATERIALS)) != 0;
+        asked |=
+            format == CSGM_FORMAT_AUTO || cli_format_keeps_looks(format); /* a picture, for one */
     }
     return asked && options->colors == 0;
 }

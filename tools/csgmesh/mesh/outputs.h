@@ -17,6 +17,8 @@ int cli_outputs_check_contents(cli_app *app);
 bool cli_outputs_draco(const cli_options *options);
 /* What --normals asks for, given the formats. */
 csgm_normals cli_outputs_normals(const cli_options *options);
+/* Whether it has colours or materials. */
+bool cli_format_keeps_looks(csgm_format format);
 /* Whether colours and materials are asked for: not where no format has them. */
 bool cli_outputs_colors(const cli_options *options);
 /* Of --unit. */

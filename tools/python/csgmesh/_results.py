@@ -565,7 +565,8 @@ def _mesh_side(scene: Scene, other: Union[Scene, Mesh], how: dict[str, Any], nor
     as_format = other.format if isinstance(other, Mesh) else None
     row = next((row for row in _core.formats() if row["name"] == as_format and row["is_written"]), None)
     kind = normals or ("crease" if row and row["keeps_creases"] else "vertex")
-    made = scene.mesh(**{"normals": kind, **how})
+    looks = not row or row["keeps_colors"] or row["keeps_materials"]
+    made = scene.mesh(**{"normals": kind, "colors": looks, **how})
     return made.as_file(row["name"]) if row and len(made.triangles) else made
 
 
