@@ -695,7 +695,7 @@ typedef struct csgm_measures {
     csgm_vec3 axes[3];     /* their directions, of unit length, the largest component positive */
     double axis_within[3]; /* degrees: the true axis is no farther from it; 90: unknown, as where
                               two moments may be equal */
-    csgm_interval area;    /* of a mesh's surface; of a field's nothing is known */
+    csgm_interval area;    /* of the surface; high INFINITY: a field's gradients are not bounded */
 } csgm_measures;
 
 /* All zeros but struct_size. */

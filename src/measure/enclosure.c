@@ -34,6 +34,7 @@ static bool find_of_leaf(const csg_kernel *kernel, const csg_tape *tape, const d
     out->value = 0.5 * ((double)high[0] + (double)low[0]);
     out->below = out->above = rounding + 0.5 * ball->spread * radius;
     out->stray = ball->spread + CSG_ENCLOSURE_ROUNDING;
+    out->is_convex = false;
     memcpy(out->slope, ball->at, sizeof out->slope);
     return true;
 }
@@ -86,6 +87,7 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     if (turns)
         memcpy(out->slope, gradients.middle, sizeof out->slope);
     out->value = gradients.value;
+    out->is_convex = false;
     out->stray = stray + CSG_ENCLOSURE_ROUNDING * gradients.longest;
     out->below = out->above =
         stray * radius + gradients.doubt + CSG_ENCLOSURE_ROUNDING * gradients.longest * radius;

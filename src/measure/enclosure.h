@@ -12,7 +12,8 @@
 typedef struct csg_enclosure {
     double value, slope[3];
     double below, above;
-    double stray; /* > 0: no gradient of the field is farther from `slope`; 0: not known */
+    double stray;   /* > 0: no gradient of the field is farther from `slope`; 0: not known */
+    bool is_convex; /* where the field is positive, or where it is not, is convex */
 } csg_enclosure;
 
 /* Of gradients, which are found with floats here and there: primitives allow themselves as much. */

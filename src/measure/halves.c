@@ -39,7 +39,8 @@ typedef struct walker {
     const csg_kernel *kernel;
     const csg_tape *tape;
     const double *c;
-    double half;
+    double half, radius; /* of the cube; of the ball around it */
+    bool with_strays;
     float *scratch;
     size_t scratch_floats;
     float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS]; /* corners */
@@ -152,6 +153,19 @@ static bool find_stray(const csg_tape *tape, const csg_tape_node *leaf, const do
     return true;
 }
 
+/* How far the leaf's gradients in the cube's ball are from this one. 0: it is not known. */
+static double stray_of_leaf(const walker *w, const csg_tape_node *leaf, csg_vec3 g)
+{
+    const float at[3] = {(float)w->c[0], (float)w->c[1], (float)w->c[2]};
+    csg_cone_balls balls = {.count = 0};
+    if (!w->with_strays || !csg_cone_add_leaf(&balls, w->tape, leaf, at, w->radius) ||
+        balls.count != 1)
+        return 0;
+    const csg_cone_ball *ball = &balls.items[0];
+    csg_vec3 d = csg_vec3_sub(csg_vec3_make(ball->at[0], ball->at[1], ball->at[2]), g);
+    return ball->spread + csg_vec3_norm(d) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g));
+}
+
 /* A concave field is nowhere above its tangent plane, and farthest below it at a corner of the
  * cube. */
 static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
@@ -170,7 +184,10 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
         return false;
     csg_vec3 g = csg_tape_gradient_at(w->kernel, &tape, csg_vec3_make(w->c[0], w->c[1], w->c[2]),
                                       w->scratch, w->scratch_floats);
-    *e = (csg_enclosure){.value = 0.5 * (at_low + at_high), .slope = {g.x, g.y, g.z}};
+    *e = (csg_enclosure){.value = 0.5 * (at_low + at_high),
+                         .slope = {g.x, g.y, g.z},
+                         .stray = stray_of_leaf(w, &alone, g),
+                         .is_convex = true};
     for (int o = 0; o < CSG_OCTANTS; o++) {
         double plane = plane_at_corner(w, e, o);
         most = fmax(most, is_turned ? (double)high[o] - plane : plane - (double)low[o]);
@@ -178,7 +195,7 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
     /* Of the tangent plane; on the other side the corners' intervals have it all. */
     double rounding =
         (at_high - at_low) + CSG_ENCLOSURE_ROUNDING * fmax(1, csg_vec3_norm(g)) * 2 * w->half;
-    rounding += stray * csg_enclosure_radius(w->half);
+    rounding += stray * w->radius;
     most += 1e-12 * (fabs(e->value) + w->half);
     e->below = is_turned ? rounding : most;
     e->above = is_turned ? most : rounding;
@@ -191,21 +208,22 @@ static bool put_faces(walker *w, uint32_t index)
     const csg_tape_node *leaf = &w->tape->nodes[index];
     const float *parameters = w->tape->parameters + leaf->parameters;
     const float c[3] = {(float)w->c[0], (float)w->c[1], (float)w->c[2]};
-    double radius = csg_enclosure_radius(w->half);
     csg_cone_balls balls = {.count = 0};
     csg_cone_face faces[CSG_CONE_MOST];
     int joined = parameters[CSG_LEAF_SIGMA] < 0 ? CSG_HALVES_UNION : CSG_HALVES_INTERSECTION;
-    if (!csg_cone_find_faces(&balls, faces, w->tape, leaf, c, radius))
+    if (!csg_cone_find_faces(&balls, faces, w->tape, leaf, c, w->radius))
         return false;
     for (uint32_t i = 0; i < balls.count; i++) {
         const double *g = balls.items[i].at;
-        double rounding = 2 * (double)parameters[CSG_LEAF_SLACK] +
-                          CSG_ENCLOSURE_ROUNDING *
-                              fmax(1, sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])) * radius;
+        double turned =
+            CSG_ENCLOSURE_ROUNDING * fmax(1, sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]));
+        double rounding = 2 * (double)parameters[CSG_LEAF_SLACK] + turned * w->radius;
         const csg_enclosure e = {.value = faces[i].value,
                                  .slope = {g[0], g[1], g[2]},
                                  .below = faces[i].below + rounding,
-                                 .above = faces[i].above + rounding};
+                                 .above = faces[i].above + rounding,
+                                 .stray = w->with_strays ? balls.items[i].spread + turned : 0,
+                                 .is_convex = true};
         if (!isfinite(e.value + e.below + e.above) || !put_plane(w, &e) ||
             (i && !put_code(w->out, joined)))
             return false;
@@ -229,7 +247,7 @@ static bool push_leaf(walker *w, uint32_t index)
     push_operand(w, index);
     if (!find_of_concave(w, index, &e))
         return false;
-    if (e.below + e.above > BENT * w->half) {
+    if (e.below + e.above > BENT * w->half || (w->with_strays && !(e.stray > 0))) {
         operand *o = &w->stack[w->top - 1];
         o->signs_only = put_faces(w, index);
         if (o->signs_only)
@@ -304,6 +322,72 @@ static double blend(const blender *b, const double *values, uint32_t count, doub
     return value;
 }
 
+static double distance_of(const double a[3], const double b[3])
+{
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+}
+
+/* How far two operands' difference in the cube may be from what it is at its centre. */
+static double change_of(const walker *w, const csg_enclosure *a, const csg_enclosure *b)
+{
+    double d[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = a->slope[k] - b->slope[k];
+    return reach_of(d, w->half) + fmax(a->below + b->above, a->above + b->below);
+}
+
+/* The largest changes of the shares in the cube: those of a fold depend on the difference alone and
+ * grow with it, those of a round blend are in the proportions of (f_i - F + n)_+. */
+static void find_changes(const walker *w, const csg_enclosure *planes, uint32_t count,
+                         const blender *b, double turn, const double *shares, double *changes)
+{
+    double low[CSG_SLOPES_NODES], high[CSG_SLOPES_NODES], lows = 0, highs = 0, change = 0;
+    if (b->node) {
+        double d = turn * (planes[0].value - planes[1].value), from, to;
+        change = change_of(w, &planes[0], &planes[1]);
+        csg_slopes_fold(b->node, b->n, b->support, d - change, 0, &from);
+        csg_slopes_fold(b->node, b->n, b->support, d + change, 0, &to);
+        changes[0] = changes[1] = fmax(shares[0] - from, to - shares[0]);
+        return;
+    }
+    double values[CSG_SLOPES_NODES] = {0}, n = (double)b->n;
+    for (uint32_t i = 0; i < count; i++) {
+        values[i] = turn * planes[i].value;
+        for (uint32_t k = 0; k < i; k++)
+            change = fmax(change, change_of(w, &planes[i], &planes[k]));
+    }
+    double value = csg_slopes_round(values, count, n);
+    change += 1e-5 * n;
+    for (uint32_t i = 0; i < count; i++) {
+        lows += low[i] = fmax(values[i] - value + n - change, 0);
+        highs += high[i] = fmax(values[i] - value + n + change, 0);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        double least = low[i] > 0 ? low[i] / (low[i] + highs - high[i]) : 0;
+        double most = high[i] > 0 ? high[i] / (high[i] + lows - low[i]) : 0;
+        changes[i] = fmax(shares[i] - least, most - shares[i]);
+    }
+}
+
+/* How far the blend's gradients in the cube are from this one, which has these shares of the
+ * planes' slopes. 0: it is not known. */
+static double stray_of_blend(const walker *w, const csg_enclosure *planes, uint32_t count,
+                             const blender *b, double turn, const double *shares,
+                             const double slope[3])
+{
+    double changes[CSG_SLOPES_NODES], most = 0, sum = CSG_ENCLOSURE_ROUNDING;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!w->with_strays || !(planes[i].stray > 0))
+            return 0;
+        most = fmax(most, planes[i].stray);
+    }
+    find_changes(w, planes, count, b, turn, shares, changes);
+    for (uint32_t i = 0; i < count; i++)
+        sum += changes[i] * distance_of(planes[i].slope, slope);
+    return sum + most;
+}
+
 /* A union by a convex blend is a convex function of its operands, so with planes for them it is
  * nowhere below its tangent plane, and farthest above it at a corner of the cube. And it grows with
  * its operands, by no more than the most that one of them does. */
@@ -334,6 +418,7 @@ static bool join_smoothly(walker *w, const operand *of, uint32_t count, const bl
     double rounding = ROUNDING * (widest + fabs(e.value)) + (b->node ? 0 : 1e-5 * (double)b->n);
     rounding += CSG_ENCLOSURE_ROUNDING * reach_of(e.slope, w->half);
     origin from = {.count = count <= ORIGIN_MOST ? count : 0, .by = *b, .turn = turn};
+    e.stray = stray_of_blend(w, planes, count, b, turn, shares, e.slope);
     from.below = rounding + (turn > 0 ? e.below : e.above);
     from.above = rounding + (turn > 0 ? e.above : e.below);
     memcpy(from.operands, planes, from.count * sizeof *planes);
@@ -457,8 +542,8 @@ static bool walk(walker *w)
     return w->top == 1;
 }
 
-bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const double c[3], double half,
-                     float *scratch, size_t scratch_floats, csg_halves *out)
+static bool find(const csg_kernel *kernel, const csg_tape *tape, const double c[3], double half,
+                 bool with_strays, float *scratch, size_t scratch_floats, csg_halves *out)
 {
     walker w; /* not filled: it is large */
     float x[3][CSG_OCTANTS], middle[3][CSG_OCTANTS];
@@ -468,6 +553,8 @@ bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const doubl
     w.tape = tape;
     w.c = c;
     w.half = half;
+    w.radius = csg_enclosure_radius(half);
+    w.with_strays = with_strays;
     w.scratch = scratch;
     w.scratch_floats = scratch_floats;
     w.top = 0;
@@ -484,6 +571,19 @@ bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const doubl
                           scratch);
     }
     return walk(&w);
+}
+
+bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const double c[3], double half,
+                     float *scratch, size_t scratch_floats, csg_halves *out)
+{
+    return find(kernel, tape, c, half, false, scratch, scratch_floats, out);
+}
+
+bool csg_halves_find_with_strays(const csg_kernel *kernel, const csg_tape *tape, const double c[3],
+                                 double half, float *scratch, size_t scratch_floats,
+                                 csg_halves *out)
+{
+    return find(kernel, tape, c, half, true, scratch, scratch_floats, out);
 }
 
 /* ---- what is known of it -----------------------------------------------------------------------
@@ -508,15 +608,18 @@ csg_truth csg_halves_evaluate(const csg_halves *h, const csg_truth planes[CSG_HA
     return stack[0];
 }
 
+csg_truth csg_halves_state_of_plane(const csg_enclosure *e, double half)
+{
+    double reach = reach_of(e->slope, half);
+    return e->value + e->above < -reach  ? CSG_TRUTH_NO
+           : e->value - e->below > reach ? CSG_TRUTH_YES
+                                         : CSG_TRUTH_OPEN;
+}
+
 csg_truth csg_halves_state(const csg_halves *h, double half)
 {
     csg_truth planes[CSG_HALVES_MOST];
-    for (int i = 0; i < h->plane_count; i++) {
-        const csg_enclosure *e = &h->planes[i];
-        double reach = reach_of(e->slope, half);
-        planes[i] = e->value + e->above < -reach  ? CSG_TRUTH_NO
-                    : e->value - e->below > reach ? CSG_TRUTH_YES
-                                                  : CSG_TRUTH_OPEN;
-    }
+    for (int i = 0; i < h->plane_count; i++)
+        planes[i] = csg_halves_state_of_plane(&h->planes[i], half);
     return csg_halves_evaluate(h, planes);
 }

@@ -33,6 +33,15 @@ bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const doubl
 
 csg_truth csg_halves_evaluate(const csg_halves *halves, const csg_truth planes[CSG_HALVES_MOST]);
 
+/* The same, and how far each piece's gradients stray from its plane's slope, wherever that can be
+ * told, which is not for nothing. */
+bool csg_halves_find_with_strays(const csg_kernel *kernel, const csg_tape *tape, const double c[3],
+                                 double half, float *scratch, size_t scratch_floats,
+                                 csg_halves *out);
+
+/* In the cube: YES all of it is on the positive side of the plane, NO none of it is. */
+csg_truth csg_halves_state_of_plane(const csg_enclosure *plane, double half);
+
 /* In the cube: YES it is all inside, NO it is all outside. */
 csg_truth csg_halves_state(const csg_halves *halves, double half);
 

@@ -13,6 +13,7 @@
 
 #include "base/pool.h"
 #include "measure/carve.h"
+#include "measure/share.h"
 
 enum { ASK_EVERY = 256 /* cubes, whether to stop */ };
 
@@ -201,21 +202,6 @@ static uint64_t cubes_of(const rounds *r)
     return cubes;
 }
 
-/* The next share. What is left open falls with its square root where the surface is smooth, slower
- * where less is known of it; cubes become more by its power of 2/3 at most. False: so many are not
- * to be had. */
-static bool choose_share(rounds *r, double wanted, double open, uint64_t left)
-{
-    static const double LEAST_STEP = 0.25, LARGEST_STEP = 0x1p-12, MARGIN = 0.7;
-    double ratio = MARGIN * wanted / open, cubes = (double)cubes_of(r) + (double)r->walk->count;
-    double step = fmax(fmin(ratio * ratio, LEAST_STEP), LARGEST_STEP);
-    double more = (double)left / cubes, affordable = more * sqrt(more);
-    if (!(affordable > 1 / LEAST_STEP))
-        return false;
-    r->share *= fmax(step, 1 / affordable);
-    return true;
-}
-
 csgm_status csg_measure_integrate(csg_measure_walk *walk, double tolerance, uint64_t most_cubes,
                                   csg_integral_bounds *out)
 {
@@ -237,7 +223,9 @@ csgm_status csg_measure_integrate(csg_measure_walk *walk, double tolerance, uint
         gather(&r, out);
         double open = out->high[0] - out->low[0], wanted = tolerance * out->high[0];
         more = open > wanted && out->cubes < most_cubes &&
-               choose_share(&r, wanted, open, most_cubes - out->cubes);
+               csg_measure_next_share(&r.share, wanted / open,
+                                      (double)cubes_of(&r) + (double)walk->count,
+                                      most_cubes - out->cubes);
     }
     csg_memory_release(memory, r.sums, bytes);
     return status;

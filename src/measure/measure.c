@@ -9,6 +9,7 @@
 
 #include "base/mesh_codes.h"
 #include "base/trace.h"
+#include "measure/area.h"
 #include "measure/extent.h"
 #include "measure/integrate.h"
 #include "measure/mesh_integrals.h"
@@ -16,7 +17,7 @@
 #include "mesh/inspect.h"
 
 /* A share of all cubes is for the bounds, which take few where they can be found at all. */
-enum { SHARE_FOR_EXTENTS = 8 };
+enum { SHARE_FOR_EXTENTS = 8, SHARE_FOR_AREA = 8 };
 
 static csgm_status refuse_empty(csgm_context *context)
 {
@@ -57,6 +58,20 @@ static void take_extents(const csg_extents *extents, csg_vec3 center, csgm_measu
             csg_interval_grown(extents->low[i] + at[i % 3], extents->high[i] + at[i % 3], 0x1p-50);
 }
 
+/* Of a surface less can be known than of what it encloses, at the same cost. */
+static csgm_status take_area(csg_measure_walk *walk, const csgm_measure_options *options,
+                             csgm_measures *out)
+{
+    static const double WIDER = 10;
+    csg_area_bounds area;
+    csgm_status status = csg_measure_area(walk, WIDER * options->tolerance,
+                                          options->most_cubes / SHARE_FOR_AREA, &area);
+    if (area.is_proven)
+        out->area = (csgm_interval){area.low, area.high};
+    out->cubes += area.cubes;
+    return status;
+}
+
 static csgm_status measure(csg_measure_walk *walk, const csgm_measure_options *options,
                            csgm_measures *out)
 {
@@ -75,8 +90,10 @@ static csgm_status measure(csg_measure_walk *walk, const csgm_measure_options *o
     if (!integrals.is_proven)
         return status;
     csg_measure_derive(integrals.low, integrals.high, field->center, options->density, out);
-    out->is_reached = extents.is_close && integrals.high[0] - integrals.low[0] <=
-                                              options->tolerance * integrals.high[0];
+    if (status == CSGM_OK)
+        status = take_area(walk, options, out);
+    bool is_close = integrals.high[0] - integrals.low[0] <= options->tolerance * integrals.high[0];
+    out->is_reached = status == CSGM_OK && extents.is_close && is_close;
     return status == CSGM_OK && !(integrals.high[0] > 0) ? refuse_empty(walk->context) : status;
 }
 

@@ -81,15 +81,29 @@ bool csg_measure_divide(const csg_measure_walk *w, csg_measure_worker *s,
     return true;
 }
 
-bool csg_measure_enclose(const csg_measure_walk *w, csg_measure_worker *s, csg_measure_cube *q,
-                         csg_halves *out)
+/* What the planes tell of the whole cube. */
+static bool take_state(csg_measure_cube *q, const csg_halves *halves)
 {
-    if (!csg_halves_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats, out))
-        return false;
-    csg_truth state = csg_halves_state(out, q->half);
+    csg_truth state = csg_halves_state(halves, q->half);
     if (state != CSG_TRUTH_OPEN)
         q->state = state == CSG_TRUTH_YES ? CSG_CELL_INSIDE : CSG_CELL_OUTSIDE;
     return true;
+}
+
+bool csg_measure_enclose(const csg_measure_walk *w, csg_measure_worker *s, csg_measure_cube *q,
+                         csg_halves *out)
+{
+    return csg_halves_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats,
+                           out) &&
+           take_state(q, out);
+}
+
+bool csg_measure_enclose_with_strays(const csg_measure_walk *w, csg_measure_worker *s,
+                                     csg_measure_cube *q, csg_halves *out)
+{
+    return csg_halves_find_with_strays(w->kernel, &q->tape, q->c, q->half, s->scratch,
+                                       w->scratch_floats, out) &&
+           take_state(q, out);
 }
 
 static bool keep(csg_measure_walk *w, const csg_measure_cube *cube)

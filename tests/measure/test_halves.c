@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Formulas of half spaces hold what they promise: in random cubes of random scenes, points that the
  * lower planes have inside are inside by the reference, those that the upper planes have outside
- * are outside. And carved cubes have the volumes that cut ones have, by inclusion and exclusion.
+ * are outside. Gradients stray no farther than is promised. Carved cubes have the volumes that cut
+ * ones have, by inclusion and exclusion, and sections the areas that these grow by.
  */
 #include <stdlib.h>
 
 #include "field/point.h"
 #include "measure/carve.h"
+#include "measure/section.h"
 #include "mesh/mesh_support.h"
 #include "scene/primitives/kinds.h"
 
@@ -29,12 +31,47 @@ static csg_truth holds(const csg_halves *h, csg_carve_side side, csg_vec3 d)
 }
 
 typedef struct tally {
-    uint32_t known, many, inside, outside;
+    uint32_t known, many, inside, outside, strays;
 } tally;
 
 /* Fillets turn on their operands' gradients: where these jump the reference and floats may be on
  * different sides of the jump, and either will do. */
 static bool has_fillets;
+
+/* Of a piece that is the surface alone, at places on the surface: towards d, and back onto it. */
+static void try_strays(const mesh_case *m, csg_random *random, const double c[3], double half,
+                       float *scratch, size_t floats, tally *seen)
+{
+    static const double ROUNDING = 2e-4; /* of gradients, by floats and where the place is found */
+    csg_halves h;
+    if (!csg_halves_find_with_strays(csg_kernel_for(CSGM_ISA_AUTO), &m->field->tape, c, half,
+                                     scratch, floats, &h) ||
+        h.length != 1 || !(h.planes[0].stray > 0))
+        return;
+    const csg_enclosure *e = &h.planes[0];
+    csg_vec3 slope = csg_vec3_make(e->slope[0], e->slope[1], e->slope[2]);
+    csg_vec3 middle = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
+    for (int i = 0; i < POINTS / 4; i++) {
+        csg_vec3 d = csg_vec3_make(csg_random_uniform(random, -half, half),
+                                   csg_random_uniform(random, -half, half),
+                                   csg_random_uniform(random, -half, half));
+        csg_sample s = test_sample(m->scene, csg_vec3_add(middle, d));
+        for (int step = 0; step < 6; step++) {
+            double square = csg_vec3_dot(s.gradient, s.gradient);
+            if (square > 0.01)
+                d = csg_vec3_sub(d, csg_vec3_scale(s.gradient, s.value / square));
+            s = test_sample(m->scene, csg_vec3_add(middle, d));
+        }
+        bool is_there = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))) <= half;
+        if (!is_there || !(fabs(s.value) < 1e-7))
+            continue;
+        double strays = csg_vec3_norm(csg_vec3_sub(s.gradient, slope));
+        if (strays > e->stray + ROUNDING)
+            fail_msg("a gradient strays by %g, %g is promised, in a cube of half %g", strays,
+                     e->stray, half);
+        seen->strays++;
+    }
+}
 
 /* c: field frame. */
 static void try_cube(const mesh_case *m, csg_random *random, const double c[3], double half,
@@ -100,6 +137,8 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
             c[1] = half * round(p.y / half);
             c[2] = half * round(p.z / half);
             try_cube(m, random, c, half, scratch, floats, seen);
+            if (!has_fillets)
+                try_strays(m, random, c, half, scratch, floats, seen);
         }
     free(scratch);
 }
@@ -124,6 +163,7 @@ static void halves_hold(void **state)
     }
     assert_true(seen.known > 2000 * test_times && seen.many > 200 * test_times);
     assert_true(seen.inside > 20000 * test_times && seen.outside > 20000 * test_times);
+    assert_true(seen.strays > 5000 * test_times);
 }
 
 /* Boxes, cylinders and cones by their edges, flat ones too, joined sharply. */
@@ -232,6 +272,96 @@ static void carved_as_cut(void **state)
     }
 }
 
+/* A formula of planes at random, of which some are nearly one. */
+static void make_formula(csg_halves *h, csg_random *random)
+{
+    int planes = 1 + (int)csg_random_below(random, 4);
+    *h = (csg_halves){.length = 0};
+    for (int i = 0; i < planes; i++) {
+        csg_enclosure *e = &h->planes[i];
+        add_plane(h, random);
+        if (i && !csg_random_below(random, 3)) {
+            *e = h->planes[0];
+            e->value += csg_random_uniform(random, -1e-3, 1e-3);
+        }
+        e->below = csg_random_uniform(random, 0, 0.02);
+        e->above = csg_random_uniform(random, 0, 0.02);
+        bool joins = csg_random_below(random, 2);
+        if (i)
+            h->code[h->length++] = joins ? CSG_HALVES_UNION : CSG_HALVES_INTERSECTION;
+    }
+}
+
+static bool is_solid(const csg_halves *h, const double *moved, csg_vec3 d)
+{
+    csg_truth planes[CSG_HALVES_MOST];
+    for (int i = 0; i < h->plane_count; i++)
+        planes[i] = plane_at(&h->planes[i], moved[i], d) >= 0 ? CSG_TRUTH_YES : CSG_TRUTH_NO;
+    return csg_halves_evaluate(h, planes) == CSG_TRUTH_YES;
+}
+
+/* How fast the carved volume grows where all planes move outwards by as much. */
+static double area_by_growth(const csg_halves *h, const double *moved, double half)
+{
+    const double step = 1e-6;
+    double volumes[2];
+    for (int side = 0; side < 2; side++) {
+        csg_halves grown = *h;
+        for (int i = 0; i < h->plane_count; i++) {
+            csg_enclosure *e = &grown.planes[i];
+            const double *s = e->slope;
+            e->value +=
+                moved[i] + (side ? 1 : -1) * step * sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+            e->below = e->above = 0;
+        }
+        volumes[side] = csg_carve(&grown, half, CSG_CARVE_MOST, NULL);
+    }
+    return (volumes[1] - volumes[0]) / (2 * step);
+}
+
+/* Wherever in their rooms the planes are, faces and surfaces have areas that sections allow. */
+static void sections_hold(void **state)
+{
+    enum { GRID = 60 };
+    const double half = 0.7;
+    int certain = 0;
+    for (uint64_t i = 0; i < 150 * test_times; i++) {
+        csg_random random = {.state = 21000 + test_first_seed + i};
+        csg_halves h;
+        double moved[CSG_HALVES_MOST];
+        make_formula(&h, &random);
+        for (int k = 0; k < h.plane_count; k++)
+            moved[k] = csg_random_uniform(&random, -h.planes[k].below, h.planes[k].above);
+        for (int face = 0; face < 6; face++) {
+            int axis = face / 2, side = face & 1 ? 1 : -1, count = 0;
+            csg_section found = csg_section_of_face(&h, half, axis, side);
+            for (int u = 0; u < GRID; u++)
+                for (int v = 0; v < GRID; v++) {
+                    double d[3];
+                    d[axis] = side * half;
+                    d[(axis + 1) % 3] = half * ((u + 0.5) * 2 / GRID - 1);
+                    d[(axis + 2) % 3] = half * ((v + 0.5) * 2 / GRID - 1);
+                    count += is_solid(&h, moved, csg_vec3_make(d[0], d[1], d[2]));
+                }
+            double area = count * 4 * half * half / (GRID * GRID), room = 8 * half * half / GRID;
+            assert_true(found.least <= area + room && found.most >= area - room);
+            assert_true(found.most <= 4 * half * half);
+        }
+        csg_section_group groups[CSG_HALVES_MOST];
+        int count = csg_section_find_groups(&h, half, groups);
+        double least = 0, most = 0, area = area_by_growth(&h, moved, half);
+        for (int n = 0; n < count; n++) {
+            csg_section found = csg_section_of_group(&h, half, &groups[n]);
+            least += found.least;
+            most += found.most;
+        }
+        if (least > area + 1e-3 || most < area - 1e-3)
+            fail_msg("an area of %g, but %g .. %g is promised", area, least, most);
+        certain += least > 0;
+    }
+    assert_true(certain > 50);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +369,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(creases_hold),
         cmocka_unit_test(capsules_hold_on_their_axes),
         cmocka_unit_test(carved_as_cut),
+        cmocka_unit_test(sections_hold),
     };
     test_take_search(argc, argv);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -64,8 +64,7 @@ static void put_measures(cli_json *json, const csgm_measures *m)
     put_intervals(json, "inertia", products, m->inertia, 6);
     put_principal(json, m);
     put_intervals(json, "bounds", sides, m->bounds, 6);
-    if (isfinite(m->area.high))
-        put_interval(json, "area", m->area);
+    put_interval(json, "area", m->area);
 }
 
 static void put_parts(cli_json *json, const cli_measured *measured)

@@ -44,6 +44,8 @@ static void print_measures(const cli_measured *measured, const csgm_measures *m)
         print_interval(sides[i], m->bounds[i]);
     if (isfinite(m->area.high))
         print_interval("area", m->area);
+    else
+        printf("  %-12s at least %.6g\n", "area", m->area.low * (1 - 5e-6)); /* rounded down */
 }
 
 void cli_measure_text(const cli_measured *measured)
