@@ -16,6 +16,7 @@ typedef enum csgm_layers_format {
     CSGM_LAYERS_NONE,
     CSGM_LAYERS_SVG, /* a group for each layer */
     CSGM_LAYERS_CLI, /* Common Layer Interface, ASCII */
+    CSGM_LAYERS_3MF, /* slice extension */
     CSGM_LAYERS_ZIP, /* masks for printers with a screen: an archive with a PNG for each layer */
     CSGM_LAYERS_COUNT
 } csgm_layers_format;
@@ -23,7 +24,7 @@ typedef enum csgm_layers_format {
 CSGM_API csgm_layers_format csgm_layers_format_from_path(const char *path);
 CSGM_API csgm_layers_format csgm_layers_format_from_name(const char *name);
 CSGM_API const char *csgm_layers_format_name(csgm_layers_format format);
-/* Masks need zlib. */
+/* Masks need zlib, 3MF libzip and expat, too. */
 CSGM_API bool csgm_layers_format_available(csgm_layers_format format);
 
 typedef struct csgm_slice_options {
@@ -57,7 +58,8 @@ CSGM_API csgm_slice_stats csgm_slice_stats_default(void);
  * themselves; they are within the tolerance of the surface, and what is not shown is thinner than
  * it. The file appears complete or not at all, and has the same bytes for any number of threads.
  * stats: NULL, or written on CSGM_OK. CSGM_ERR_ARGUMENT: an option out of range. CSGM_ERR_SCENE
- * (reported): the solid is empty or unbounded. */
+ * (reported): the solid is empty or unbounded. CSGM_ERR_UNSUPPORTED: this build lacks the format.
+ */
 CSGM_API csgm_status csgm_slice_field(csgm_context *context, const csgm_field *field,
                                       const char *path, csgm_layers_format format,
                                       const csgm_slice_options *options, csgm_slice_stats *stats);

@@ -25,8 +25,7 @@ const char *csgm_layers_format_name(csgm_layers_format format)
 
 bool csgm_layers_format_available(csgm_layers_format format)
 {
-    return (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
-           (format != CSGM_LAYERS_ZIP || csg_masks_available());
+    return csg_layers_format_available(format);
 }
 
 csgm_slice_options csgm_slice_options_default(void)
@@ -61,6 +60,8 @@ csgm_status csgm_slice_field(csgm_context *context, const csgm_field *field, con
     csgm_slice_stats made = csgm_slice_stats_default();
     if (!context || !field || !path || !adopt(&own, options, format, stats))
         return CSGM_ERR_ARGUMENT;
+    if (!csg_layers_format_available(format))
+        return CSGM_ERR_UNSUPPORTED;
     csgm_status status = csg_slice_file(context, field, path, format, &own, &made);
     if (status == CSGM_OK)
         csg_struct_deliver(stats, &made);
@@ -75,6 +76,8 @@ csgm_status csgm_slice_field_fd(csgm_context *context, const csgm_field *field, 
     csgm_slice_stats made = csgm_slice_stats_default();
     if (!context || !field || fd < 0 || !adopt(&own, options, format, stats))
         return CSGM_ERR_ARGUMENT;
+    if (!csg_layers_format_available(format))
+        return CSGM_ERR_UNSUPPORTED;
     csgm_status status = csg_slice_fd(context, field, fd, name, format, &own, &made);
     if (status == CSGM_OK)
         csg_struct_deliver(stats, &made);

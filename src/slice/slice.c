@@ -170,7 +170,9 @@ static csgm_status place_layers(slice_job *job, csg_box bounds, double height)
     double count = ceil((bounds.max.z - bounds.min.z) / height - 1e-6);
     job->bottom = bounds.min.z;
     job->height = height;
+    job->head.bottom = job->bottom;
     job->head.count = count > 1 ? (size_t)fmin(count, 2.0 * MOST_LAYERS) : 1;
+    job->head.top = job->bottom + (double)job->head.count * height;
     if (job->head.count > MOST_LAYERS) {
         csg_diag_plain(&job->context->diags, CSG_DIAG_TOO_FINE, NULL, NULL,
                        "%g layers of %g: %d is the most", count, height, MOST_LAYERS);

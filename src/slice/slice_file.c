@@ -6,6 +6,7 @@
 #include "base/mesh_codes.h"
 #include "io/file.h"
 #include "io/sink.h"
+#include "io/threemf/threemf_package.h"
 #include "slice/slice.h"
 
 enum { MOST_SIDE = 16384 /* pixels */ };
@@ -13,6 +14,7 @@ enum { MOST_SIDE = 16384 /* pixels */ };
 typedef struct layers_file {
     const csg_layers_writer *writer;
     csg_sink sink;
+    csg_zip *zip; /* NULL: none */
     csg_layers_head head;
     double pixel;
     uint64_t written;
@@ -27,14 +29,22 @@ static bool refuse(layers_file *file, const char *format, double value)
     return false;
 }
 
+static bool refuse_size(layers_file *file)
+{
+    return refuse(file, "the archive would be larger than %g bytes",
+                  (double)file->writer->most_bytes);
+}
+
 static bool pass_page(void *user, const csg_page *page)
 {
     layers_file *file = user;
     file->written += page->length;
     if (file->writer->most_bytes && file->written > file->writer->most_bytes)
-        return refuse(file, "the archive would be larger than %g bytes",
-                      (double)file->writer->most_bytes);
-    csg_sink_put(&file->sink, page->data, page->length);
+        return refuse_size(file);
+    if (file->zip)
+        csg_zip_text(file->zip, page->data, page->length);
+    else
+        csg_sink_put(&file->sink, page->data, page->length);
     return !page->failed && !file->sink.error;
 }
 
@@ -87,6 +97,25 @@ static void put_on_page(void *user, csg_page *page, const csg_layers_head *head,
     file->writer->layer(page, &file->head, layer);
 }
 
+static csgm_status begin_package(layers_file *file)
+{
+    csgm_status status = csg_zip_create(&file->sink, &file->zip);
+    if (status == CSGM_OK)
+        csg_3mf_begin(file->zip);
+    return status;
+}
+
+/* status: of what was put. The text's length was looked at, so that the archive fits. */
+static csgm_status end_package(layers_file *file, csgm_status status)
+{
+    if (status == CSGM_OK && csg_zip_finish(file->zip) != CSGM_OK) {
+        refuse_size(file);
+        status = CSGM_ERR_IO;
+    }
+    csg_zip_destroy(file->zip);
+    return status;
+}
+
 csgm_status csg_slice_fd(csgm_context *context, const csgm_field *field, int fd, const char *name,
                          csgm_layers_format format, const csgm_slice_options *options,
                          csgm_slice_stats *stats)
@@ -96,9 +125,14 @@ csgm_status csg_slice_fd(csgm_context *context, const csgm_field *field, int fd,
     csgm_status status = csg_sink_open(&file.sink, context, fd, name);
     if (status != CSGM_OK)
         return status;
-    status = csg_slice_field(context, field, options, &receiver, stats);
+    if (file.writer->is_package)
+        status = begin_package(&file);
+    if (status == CSGM_OK)
+        status = csg_slice_field(context, field, options, &receiver, stats);
     if (status == CSGM_OK && !put_frame(&file, file.writer->end))
         status = CSGM_ERR_IO;
+    if (file.zip)
+        status = end_package(&file, status);
     csg_memory_release(&context->memory, file.head.masks,
                        file.head.count * sizeof *file.head.masks);
     if (status == CSGM_OK || (status == CSGM_ERR_IO && file.sink.error))

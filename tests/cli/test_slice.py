@@ -17,6 +17,8 @@ import cli
 
 SVG = "{http://www.w3.org/2000/svg}"
 SLIC3R = "{http://slic3r.org/namespaces/slic3r}"
+CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+SLICES = "{http://schemas.microsoft.com/3dmanufacturing/slice/2015/07}"
 
 
 def write(folder, name, text):
@@ -63,6 +65,34 @@ def cli_layers(path):
         assert numbers[1] == (area(points[:-1]) > 0)
         layers[-1][1].append(points[:-1])
     return layers, head
+
+
+def slices_3mf(path):
+    """(bottom, top, loops) of each slice of a 3MF file; what the slice extension demands must hold."""
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        model = xml.etree.ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+    assert (model.get("unit"), model.get("requiredextensions")) == ("millimeter", "s")
+    stack, thing = model.find(f".//{SLICES}slicestack"), model.find(f".//{CORE}object")
+    assert thing.get(SLICES + "slicestackid") == stack.get("id") and thing.get(SLICES + "meshresolution") == "lowres"
+    assert [item.get("objectid") for item in model.iter(CORE + "item")] == [thing.get("id")]
+    corners = [[float(vertex.get(axis)) for axis in "xyz"] for vertex in thing.iter(CORE + "vertex")]
+    sides = [(int(t.get(a)), int(t.get(b))) for t in thing.iter(CORE + "triangle") for a, b in (("v1", "v2"), ("v2", "v3"), ("v3", "v1"))]
+    assert len(corners) == 8 and len(set(sides)) == 36 and {(b, a) for a, b in sides} == set(sides)
+    bottom, layers = float(stack.get("zbottom")), []
+    for part in stack:
+        top, loops = float(part.get("ztop")), []
+        points = [(float(vertex.get("x")), float(vertex.get("y"))) for vertex in part.iter(SLICES + "vertex")]
+        for polygon in part.iter(SLICES + "polygon"):
+            ends = [int(segment.get("v2")) for segment in polygon]
+            assert ends[-1] == int(polygon.get("startv")) and len(set(ends)) == len(ends) > 2
+            loops.append([points[i] for i in ends[-1:] + ends[:-1]])
+        assert part.tag == SLICES + "slice" and top > bottom and bool(points) == bool(loops) == bool(len(part))
+        assert all(corners[0][k] <= p[k] <= corners[7][k] for p in points for k in (0, 1))
+        layers.append((bottom, top, loops))
+        bottom = top
+    assert (corners[0][2], corners[7][2]) == (layers[0][0], layers[-1][1])
+    return layers
 
 
 def grey_png(data):
@@ -131,6 +161,48 @@ class Slice(unittest.TestCase):
             for loop, other in zip(loops, others):
                 for (x, y), (u, v) in zip(loop, other):
                     self.assertLess(abs(x - u) + abs(y - v), 2.1e-5)
+
+    def test_3mf_has_what_svg_has(self):
+        scene = "torus(8, 2);\ntranslate([0, 0, -2]) cube([3, 2, 4]);\ntranslate([9, 9, 4]) cube(1);\n"
+        drawn = svg_layers(self.slice(scene, "--layer", 0.5, "-e", 0.01)[0])
+        layers = slices_3mf(self.slice(scene, "--layer", 0.5, "-e", 0.01, name="layers.3mf")[0])
+        self.assertEqual((layers[0][0], layers[-1][1], len(layers)), (-2, 5, 14))
+        self.assertEqual([len(loops) for _, _, loops in layers], [len(loops) for _, loops in drawn])
+        for (bottom, top, loops), (middle, others) in zip(layers, drawn):
+            self.assertAlmostEqual((bottom + top) / 2, middle, 9)
+            self.assertEqual(loops, others)
+        files = set()
+        for threads in (1, 2, 3):
+            with open(self.slice(scene, "--layer", 0.01, "-j", threads, name="layers.3mf")[0], "rb") as file:
+                files.add(file.read())
+        self.assertEqual(len(files), 1)
+
+    def test_lib3mf_reads_slices(self):
+        try:
+            import lib3mf  # pylint: disable=import-outside-toplevel
+        except ImportError:
+            self.skipTest("lib3mf for Python is not installed")
+        out, result = self.slice("torus(8, 2);\ntranslate([9, 9, 4]) cube(1);\n", "--layer", 0.25, "--unit", "cm", "--json", name="layers.3mf")
+        layers, said = slices_3mf(out), json.loads(result.stdout)
+        model = lib3mf.get_wrapper().CreateModel()
+        reader = model.QueryReader("3mf")
+        reader.SetStrictModeActive(True)
+        reader.ReadFromFile(out)
+        self.assertEqual(reader.GetWarningCount(), 0)
+        stacks, objects = model.GetSliceStacks(), model.GetMeshObjects()
+        self.assertTrue(stacks.MoveNext() and objects.MoveNext())
+        stack, thing = stacks.GetCurrentSliceStack(), objects.GetCurrentMeshObject()
+        self.assertTrue(thing.HasSlices(False) and thing.IsManifoldAndOriented() and thing.IsValid())
+        self.assertEqual((stack.GetSliceCount(), stack.GetBottomZ()), (said["layers"], -20))
+        area_mm3 = 0
+        for i, (bottom, top, loops) in enumerate(layers):
+            part = stack.GetSlice(i)
+            self.assertAlmostEqual(part.GetZTop(), top, 5)
+            self.assertEqual(part.GetPolygonCount(), len(loops))
+            points = [tuple(vertex.Coordinates) for vertex in part.GetVertices()] if loops else []
+            read = [[points[index] for index in part.GetPolygonIndices(k)] for k in range(len(loops))]
+            area_mm3 += sum(area(loop[:-1]) for loop in read) * (top - bottom)
+        self.assertAlmostEqual(area_mm3 / 1000, said["volume"], delta=1e-4 * said["volume"])
 
     def test_masks(self):
         scene = "difference() { cube([10, 6, 4]); translate([3, 3, -1]) cylinder(h = 6, r = 2); }\ntranslate([8, 4, 3.9]) cube([1, 1.5, 1]);\n"

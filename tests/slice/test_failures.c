@@ -82,6 +82,12 @@ static void of_masks(void **state)
         any_allocation_may_fail(CSGM_LAYERS_ZIP);
 }
 
+static void of_3mf(void **state)
+{
+    if (csgm_layers_format_available(CSGM_LAYERS_3MF))
+        any_allocation_may_fail(CSGM_LAYERS_3MF);
+}
+
 static void options_out_of_range(void **state)
 {
     csgm_context *context;
@@ -111,6 +117,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(of_svg),
         cmocka_unit_test(of_masks),
+        cmocka_unit_test(of_3mf),
         cmocka_unit_test(options_out_of_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "base/elementary.h"
+#include "io/adapter.h"
 
 static const struct {
     const char *name;
@@ -38,6 +39,13 @@ csgm_layers_format csg_layers_format_from_path(const char *path)
 const char *csg_layers_format_name(csgm_layers_format format)
 {
     return (int)format > 0 && format < CSGM_LAYERS_COUNT ? rows[format].name : rows[0].name;
+}
+
+bool csg_layers_format_available(csgm_layers_format format)
+{
+    return (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
+           (!rows[format].writer->has_masks || csg_masks_available()) &&
+           (!rows[format].writer->is_package || csg_package_available());
 }
 
 const csg_layers_writer *csg_layers_writer_of(csgm_layers_format format)

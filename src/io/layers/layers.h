@@ -11,6 +11,8 @@
 csgm_layers_format csg_layers_format_from_path(const char *path); /* NULL gives NONE */
 csgm_layers_format csg_layers_format_from_name(const char *name);
 const char *csg_layers_format_name(csgm_layers_format format);
+/* Are the libraries there that it needs? False for what is no format. */
+bool csg_layers_format_available(csgm_layers_format format);
 
 /* A picture in an archive. */
 typedef struct csg_mask_entry {
@@ -19,9 +21,10 @@ typedef struct csg_mask_entry {
 
 /* What is the same for all layers of a file; scene units. */
 typedef struct csg_layers_head {
-    csg_box box;      /* of the solid */
-    double tolerance; /* of the contours */
-    double scale;     /* from scene units to millimetres */
+    csg_box box;        /* of the solid */
+    double tolerance;   /* of the contours */
+    double scale;       /* from scene units to millimetres */
+    double bottom, top; /* of all layers */
     size_t count;
     /* of masks, in millimetres: pixels, the upper left corner, and an entry for each layer that its
      * worker fills */
@@ -42,13 +45,17 @@ typedef struct csg_sliced_layer {
 csg_page csg_layers_page(csg_memory *memory, const csg_layers_head *head);
 void csg_layers_release_page(csg_page *page);
 
+/* Archives end at 4 GiB, and so does each file in them. */
+#define CSG_LAYERS_ARCHIVE_BYTES 0xf0000000
+
 typedef struct csg_layers_writer {
     void (*begin)(csg_page *page, const csg_layers_head *head);
     void (*layer)(csg_page *page, const csg_layers_head *head, const csg_sliced_layer *layer);
     void (*end)(csg_page *page, const csg_layers_head *head);
-    bool has_masks;     /* pixels and entries are asked for */
-    size_t most_layers; /* 0: any */
-    uint64_t most_bytes;
+    bool has_masks;      /* pixels and entries are asked for */
+    bool is_package;     /* what is put is the text of a 3MF package's model */
+    size_t most_layers;  /* 0: any */
+    uint64_t most_bytes; /* of all pages; 0: any */
 } csg_layers_writer;
 
 const csg_layers_writer *csg_layers_writer_of(csgm_layers_format format);

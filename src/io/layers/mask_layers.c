@@ -172,7 +172,7 @@ const csg_layers_writer csg_layers_zip = {begin_masks,
                                           end_masks,
                                           .has_masks = true,
                                           .most_layers = 65535,
-                                          .most_bytes = 0xf0000000};
+                                          .most_bytes = CSG_LAYERS_ARCHIVE_BYTES};
 
 bool csg_masks_available(void)
 {

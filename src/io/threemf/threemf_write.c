@@ -10,7 +10,7 @@
 #include "io/looks.h"
 #include "io/metadata.h"
 #include "io/reader.h"
-#include "io/threemf/zip_write.h"
+#include "io/threemf/threemf_package.h"
 #include "io/units.h"
 #include "io/writers.h"
 
@@ -320,12 +320,11 @@ static void put_object(model *m, uint64_t index)
 static void put_model(model *m, const csgm_write_options *options)
 {
     uint64_t count = m->mesh->triangle_count ? csg_part_count(m->mesh) : 0;
-    put_xml(m, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"");
+    put_xml(m, CSG_XML_HEAD "<model unit=\"");
     put_xml(m, csg_unit_name(options->unit));
-    put_xml(m, "\" xml:lang=\"en-US\" "
-               "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
-               "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
-               "<metadata name=\"Application\">" CSG_WRITTEN_BY "</metadata>\n");
+    put_xml(m, "\" " CSG_3MF_CORE " "
+               "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/"
+               "02\">\n" CSG_3MF_APPLICATION);
     put_metadata(m, options);
     put_xml(m, "<resources>\n");
     put_looks(m);
@@ -337,26 +336,6 @@ static void put_model(model *m, const csgm_write_options *options)
         if (!m->mesh->part_count || m->mesh->parts[i].triangle_count)
             put_id(m, "<item objectid=\"", FIRST_OBJECT_ID + i, "\"/>\n");
     put_xml(m, "</build>\n</model>\n");
-}
-
-static void put_small_files(model *m)
-{
-    csg_zip_file(m->zip, "[Content_Types].xml");
-    put_xml(m,
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-            "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
-            "<Default Extension=\"rels\" "
-            "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
-            "<Default Extension=\"model\" "
-            "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n");
-    csg_zip_file(m->zip, "_rels/.rels");
-    put_xml(
-        m,
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n"
-        "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
-        "</Relationships>\n");
 }
 
 csgm_status csg_3mf_write(csg_sink *sink, const csgm_mesh_view *mesh,
@@ -371,8 +350,7 @@ csgm_status csg_3mf_write(csg_sink *sink, const csgm_mesh_view *mesh,
     if (!status)
         status = csg_zip_create(sink, &m.zip);
     if (!status) {
-        put_small_files(&m);
-        csg_zip_file(m.zip, "3D/3dmodel.model");
+        csg_3mf_begin(m.zip);
         put_model(&m, options);
         status = csg_zip_finish(m.zip);
         if (status)

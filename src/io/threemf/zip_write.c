@@ -49,7 +49,7 @@ struct csg_zip {
     size_t slot_count, packed_room;
     packer *packers; /* one per worker */
     uint32_t worker_count;
-    slot loose; /* text put in small portions */
+    size_t full; /* slots of text put in small portions; more of it may be in the next one */
     uint64_t first_piece;
     csg_zip_piece_fn *piece;
     void *user;
@@ -96,26 +96,48 @@ static void append(csg_zip *zip, const slot *s)
     zip->written += s->packed_bytes;
 }
 
+static void do_for_slots(csg_zip *zip, size_t count, csg_pool_work *task)
+{
+    if (zip->sink->context->pool)
+        csg_pool_run(zip->sink->context->pool, count, task, NULL, zip);
+    else
+        for (size_t i = 0; i < count; i++)
+            task(zip, 0, i);
+    for (size_t i = 0; i < count; i++)
+        append(zip, &zip->slots[i]);
+}
+
+static bool pack_slot(void *user, uint32_t worker, size_t index)
+{
+    csg_zip *zip = user;
+    pack(zip, &zip->slots[index], &zip->packers[worker]);
+    return true;
+}
+
 static void flush_loose(csg_zip *zip)
 {
-    if (!zip->loose.text_bytes)
-        return;
-    pack(zip, &zip->loose, &zip->packers[0]);
-    append(zip, &zip->loose);
-    zip->loose.text_bytes = 0;
+    bool is_begun = zip->full < zip->slot_count && zip->slots[zip->full].text_bytes;
+    do_for_slots(zip, zip->full + is_begun, pack_slot);
+    zip->full = 0;
+    zip->slots[0].text_bytes = 0;
 }
 
 void csg_zip_text(csg_zip *zip, const char *text, size_t length)
 {
     while (length) {
-        size_t room = CSG_ZIP_PIECE_BYTES - zip->loose.text_bytes;
+        slot *s = &zip->slots[zip->full];
+        size_t room = CSG_ZIP_PIECE_BYTES - s->text_bytes;
         size_t count = length < room ? length : room;
-        memcpy(zip->loose.text + zip->loose.text_bytes, text, count);
-        zip->loose.text_bytes += count;
+        memcpy(s->text + s->text_bytes, text, count);
+        s->text_bytes += count;
         text += count;
         length -= count;
-        if (zip->loose.text_bytes == CSG_ZIP_PIECE_BYTES)
+        if (s->text_bytes < CSG_ZIP_PIECE_BYTES)
+            continue;
+        if (++zip->full == zip->slot_count)
             flush_loose(zip);
+        else
+            zip->slots[zip->full].text_bytes = 0;
     }
 }
 
@@ -124,8 +146,7 @@ static bool make_piece(void *user, uint32_t worker, size_t index)
     csg_zip *zip = user;
     slot *s = &zip->slots[index];
     s->text_bytes = zip->piece(zip->user, zip->first_piece + index, s->text);
-    pack(zip, s, &zip->packers[worker]);
-    return true;
+    return pack_slot(zip, worker, index);
 }
 
 void csg_zip_pieces(csg_zip *zip, uint64_t count, csg_zip_piece_fn *piece, void *user)
@@ -136,14 +157,9 @@ void csg_zip_pieces(csg_zip *zip, uint64_t count, csg_zip_piece_fn *piece, void 
     for (uint64_t first = 0; first < count && !zip->sink->error; first += zip->slot_count) {
         size_t batch = count - first < zip->slot_count ? (size_t)(count - first) : zip->slot_count;
         zip->first_piece = first;
-        if (zip->sink->context->pool)
-            csg_pool_run(zip->sink->context->pool, batch, make_piece, NULL, zip);
-        else
-            for (size_t i = 0; i < batch; i++)
-                make_piece(zip, 0, i);
-        for (size_t i = 0; i < batch; i++)
-            append(zip, &zip->slots[i]);
+        do_for_slots(zip, batch, make_piece);
     }
+    zip->slots[0].text_bytes = 0;
 }
 
 /* ---- the archive ----------------------------------------------------------------------------- */
@@ -248,7 +264,6 @@ csgm_status csg_zip_create(csg_sink *sink, csg_zip **out)
     bool made = make_packers(zip);
     if (made) /* and a flush at the end */
         zip->packed_room = deflateBound(&zip->packers[0].stream, CSG_ZIP_PIECE_BYTES) + 64;
-    made = made && make_slot(zip, &zip->loose);
     size_t wanted = 2 * (size_t)zip->worker_count;
     wanted = wanted < MOST_SLOTS ? wanted : MOST_SLOTS;
     while (made && zip->slot_count < wanted)
@@ -268,7 +283,6 @@ void csg_zip_destroy(csg_zip *zip)
     csg_memory *memory = &zip->sink->context->memory;
     for (size_t i = 0; i < zip->slot_count; i++)
         release_slot(zip, &zip->slots[i]);
-    release_slot(zip, &zip->loose);
     for (uint32_t i = 0; zip->packers && i < zip->worker_count; i++)
         if (zip->packers[i].ready)
             deflateEnd(&zip->packers[i].stream);
