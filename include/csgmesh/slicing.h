@@ -36,6 +36,7 @@ typedef struct csgm_slice_options {
     double pixel;   /* > 0: the edge of a mask's pixel in millimetres, default 0.05 */
     bool sync;      /* default true: the file is on the disk before it has its name */
     csgm_monitor monitor; /* stage CSGM_STAGE_WRITE */
+    const char *part;     /* of this name alone; NULL (default): all of it */
 } csgm_slice_options;
 
 CSGM_API csgm_slice_options csgm_slice_options_default(void);
@@ -57,8 +58,9 @@ CSGM_API csgm_slice_stats csgm_slice_stats_default(void);
  * middle of each. Contours are closed, have the solid on their left and cross neither others nor
  * themselves; they are within the tolerance of the surface, and what is not shown is thinner than
  * it. The file appears complete or not at all, and has the same bytes for any number of threads.
- * stats: NULL, or written on CSGM_OK. CSGM_ERR_ARGUMENT: an option out of range. CSGM_ERR_SCENE
- * (reported): the solid is empty or unbounded. CSGM_ERR_UNSUPPORTED: this build lacks the format.
+ * stats: NULL, or written on CSGM_OK. CSGM_ERR_ARGUMENT: an option out of range, or no part has
+ * that name (csgm_field_part). CSGM_ERR_SCENE (reported): the solid is empty or unbounded.
+ * CSGM_ERR_UNSUPPORTED: this build lacks the format.
  */
 CSGM_API csgm_status csgm_slice_field(csgm_context *context, const csgm_field *field,
                                       const char *path, csgm_layers_format format,

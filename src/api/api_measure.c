@@ -2,10 +2,8 @@
  * Measures of the public interface.
  */
 #include <math.h>
-#include <string.h>
 
 #include "api/options.h"
-#include "field/field.h"
 #include "measure/measure.h"
 
 csgm_measure_options csgm_measure_options_default(void)
@@ -29,22 +27,6 @@ static bool adopt(csgm_measure_options *own, const csgm_measure_options *given)
            own->most_cubes > 0;
 }
 
-static bool is_name(const char *name, const char *wanted)
-{
-    return name && strcmp(name, wanted) == 0;
-}
-
-/* NULL: there is none of that name. */
-static const csgm_field *field_of(const csgm_field *field, const char *part)
-{
-    if (!part)
-        return field;
-    for (size_t i = 0; i < field->part_count; i++)
-        if (is_name(field->parts[i].name, part))
-            return field->parts[i].field;
-    return NULL;
-}
-
 static void deliver(csgm_status status, const csgm_measures *made, csgm_measures *out)
 {
     if (status == CSGM_OK || status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY ||
@@ -60,7 +42,7 @@ csgm_status csgm_measure_field(csgm_context *context, const csgm_field *field,
     if (!context || !field || !out || !csg_struct_is_known(out, sizeof *out) ||
         !adopt(&own, options))
         return CSGM_ERR_ARGUMENT;
-    const csgm_field *of = field_of(field, own.part);
+    const csgm_field *of = csg_option_part(field, own.part);
     if (!of)
         return CSGM_ERR_ARGUMENT;
     csgm_status status = csg_measure_field(context, of, &own, &made);
@@ -79,7 +61,7 @@ csgm_status csgm_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     csgm_mesh_view of = *mesh;
     if (own.part) {
         uint64_t i = 0;
-        while (i < mesh->part_count && !is_name(mesh->parts[i].name, own.part))
+        while (i < mesh->part_count && !csg_option_is_name(mesh->parts[i].name, own.part))
             i++;
         if (i == mesh->part_count)
             return CSGM_ERR_ARGUMENT;

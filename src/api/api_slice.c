@@ -5,7 +5,6 @@
 
 #include "api/options.h"
 #include "csgmesh/slicing.h"
-#include "field/field.h"
 #include "slice/slice.h"
 
 csgm_layers_format csgm_layers_format_from_path(const char *path)
@@ -60,9 +59,12 @@ csgm_status csgm_slice_field(csgm_context *context, const csgm_field *field, con
     csgm_slice_stats made = csgm_slice_stats_default();
     if (!context || !field || !path || !adopt(&own, options, format, stats))
         return CSGM_ERR_ARGUMENT;
+    const csgm_field *of = csg_option_part(field, own.part);
+    if (!of)
+        return CSGM_ERR_ARGUMENT;
     if (!csg_layers_format_available(format))
         return CSGM_ERR_UNSUPPORTED;
-    csgm_status status = csg_slice_file(context, field, path, format, &own, &made);
+    csgm_status status = csg_slice_file(context, of, path, format, &own, &made);
     if (status == CSGM_OK)
         csg_struct_deliver(stats, &made);
     return status;
@@ -76,9 +78,12 @@ csgm_status csgm_slice_field_fd(csgm_context *context, const csgm_field *field, 
     csgm_slice_stats made = csgm_slice_stats_default();
     if (!context || !field || fd < 0 || !adopt(&own, options, format, stats))
         return CSGM_ERR_ARGUMENT;
+    const csgm_field *of = csg_option_part(field, own.part);
+    if (!of)
+        return CSGM_ERR_ARGUMENT;
     if (!csg_layers_format_available(format))
         return CSGM_ERR_UNSUPPORTED;
-    csgm_status status = csg_slice_fd(context, field, fd, name, format, &own, &made);
+    csgm_status status = csg_slice_fd(context, of, fd, name, format, &own, &made);
     if (status == CSGM_OK)
         csg_struct_deliver(stats, &made);
     return status;

@@ -8,6 +8,8 @@
 
 #include <string.h>
 
+#include "field/field.h"
+
 enum { STEP = sizeof(void *) };
 
 bool csg_struct_is_known(const void *given, size_t own_bytes)
@@ -39,4 +41,19 @@ bool csg_options_adopt(void *own, size_t own_bytes, const void *given)
     memcpy(own, given, size);
     memcpy(own, &own_size, sizeof own_size);
     return true;
+}
+
+bool csg_option_is_name(const char *name, const char *wanted)
+{
+    return name && strcmp(name, wanted) == 0;
+}
+
+const csgm_field *csg_option_part(const csgm_field *field, const char *part)
+{
+    if (!part)
+        return field;
+    for (size_t i = 0; i < field->part_count; i++)
+        if (csg_option_is_name(field->parts[i].name, part))
+            return field->parts[i].field;
+    return NULL;
 }

@@ -18,4 +18,10 @@ bool csg_struct_is_known(const void *given, size_t own_bytes);
 /* Fills the caller's struct from ours as far as it goes; its size stays. NULL: nothing. */
 void csg_struct_deliver(void *given, const void *own);
 
+/* Is a part of this name, which may be NULL, the one that an option wants? */
+bool csg_option_is_name(const char *name, const char *wanted);
+/* What is meant by the name of a part: the whole field where it is NULL. NULL: there is no such
+ * part. */
+const csgm_field *csg_option_part(const csgm_field *field, const char *part);
+
 #endif

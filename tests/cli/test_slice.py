@@ -228,6 +228,19 @@ class Slice(unittest.TestCase):
         self.assertIn("too many for an archive", result.stderr)
         self.assertEqual(os.listdir(self.folder), ["scene.txt"])
 
+    def test_one_part(self):
+        scene = 'part("lid") translate([0, 0, 5]) cube([4, 5, 1]);\npart("box") cube([3, 2, 4]);\n'
+        out, result = self.slice(scene, "--layer", 0.5, "--part", "lid", "--json")
+        layers, said = svg_layers(out), json.loads(result.stdout)
+        self.assertEqual(([z for z, _ in layers], said["part"]), ([5.25, 5.75], "lid"))
+        self.assertAlmostEqual(said["volume"], 20, 3)
+        self.assertNotIn("part", json.loads(self.slice(scene, "--layer", 0.5, "--json")[1].stdout))
+        _, result = self.slice(scene, "--layer", 0.5, "--part", "lit", name="none.svg", status=1)
+        self.assertIn('did you mean "lid"', result.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "none.svg")))
+        _, result = self.slice("cube(1);\n", "--layer", 0.5, "--part", "lid", name="none.svg", status=1)
+        self.assertIn("no named parts", result.stderr)
+
     def test_units_and_standard_output(self):
         scene = write(self.folder, "scene.txt", "cube(1);\n")
         result = cli.run("slice", scene, "--layer", 0.5, "--unit", "in", "-o", "-", "-f", "svg")

@@ -4,7 +4,22 @@
 #include "core/part_names.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+const char **cli_part_names(const csgm_field *field, size_t *count)
+{
+    size_t parts = 0;
+    const char *name;
+    while (csgm_field_part(field, parts, &name))
+        parts++;
+    const char **names = calloc(parts + 1, sizeof *names);
+    *count = 0;
+    for (size_t i = 0; names && i < parts; i++)
+        if (csgm_field_part(field, i, &name) && name)
+            names[(*count)++] = name;
+    return names;
+}
 
 int cli_part_find(cli_app *app, const char *path, const char *wanted, const char **names,
                   size_t count)

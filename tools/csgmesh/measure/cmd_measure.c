@@ -28,7 +28,7 @@ static csgm_measure_options measure_options(cli_app *app)
         options.density = o->measure_density;
     if (o->given[CLI_OPTION_measure_to])
         options.tolerance = o->measure_to;
-    options.part = o->measure_part;
+    options.part = o->part;
     options.monitor = (csgm_monitor){
         .progress = cli_console_progress, .cancelled = ask_interrupted, .user = &app->console};
     return options;
@@ -54,19 +54,14 @@ typedef struct subject {
 /* False: out of memory. */
 static bool find_names(subject *s)
 {
-    size_t count = (size_t)s->mesh.part_count;
-    const char *name;
-    while (s->field && csgm_field_part(s->field, count, &name))
-        count++;
-    s->names = calloc(count + 1, sizeof *s->names);
-    for (size_t i = 0; s->names && i < count; i++) {
-        if (s->field)
-            csgm_field_part(s->field, i, &name);
-        else
-            name = s->mesh.parts[i].name;
-        if (name)
-            s->names[s->count++] = name;
+    if (s->field) {
+        s->names = cli_part_names(s->field, &s->count);
+        return s->names != NULL;
     }
+    s->names = calloc((size_t)s->mesh.part_count + 1, sizeof *s->names);
+    for (uint64_t i = 0; s->names && i < s->mesh.part_count; i++)
+        if (s->mesh.parts[i].name)
+            s->names[s->count++] = s->mesh.parts[i].name;
     return s->names != NULL;
 }
 
@@ -236,7 +231,7 @@ int cli_cmd_measure(cli_app *app)
         if (asked == CSGM_FORMAT_AUTO)
             return cli_usage_error(app, NULL, "unknown format '%s'", app->options->format);
     }
-    if (app->options->measure_each_part && app->options->measure_part)
+    if (app->options->measure_each_part && app->options->part)
         return cli_usage_error(app, NULL, "--part measures one part, --each-part all: give one");
     int status = cli_checks_read(app, &app->options->measure_checks);
     if (status == CLI_DONE && app->options->measure_junit && !app->options->measure_checks.count)

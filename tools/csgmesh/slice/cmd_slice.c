@@ -2,12 +2,14 @@
  * csgmesh slice SCENE -o OUT.svg --layer H: the contours of layers, straight from the field.
  */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "core/interrupt.h"
 #include "core/json.h"
 #include "core/options.h"
+#include "core/part_names.h"
 #include "core/work.h"
 #include "csgmesh/slicing.h"
 #include "mesh/outputs.h"
@@ -27,6 +29,7 @@ static csgm_slice_options slice_options(cli_app *app)
         options.tolerance = o->tolerance;
     if (o->given[CLI_OPTION_pixel])
         options.pixel = o->pixel;
+    options.part = o->part;
     options.unit = cli_outputs_unit(o);
     options.sync = !o->no_sync;
     options.monitor = (csgm_monitor){
@@ -89,14 +92,16 @@ static void print_text(const csgm_slice_stats *s)
                (unsigned long long)s->unsettled, s->smallest, s->tolerance);
 }
 
-static void print_json(const char *scene, const char *path, double height,
+static void print_json(const char *scene, const char *path, const csgm_slice_options *options,
                        const csgm_slice_stats *s)
 {
     cli_json json = cli_json_make(stdout, true);
     cli_json_begin(&json, '{');
     cli_json_string(&json, "scene", scene);
+    if (options->part)
+        cli_json_string(&json, "part", options->part);
     cli_json_string(&json, "file", path);
-    cli_json_number(&json, "layer", height);
+    cli_json_number(&json, "layer", options->height);
     cli_json_count(&json, "layers", s->layers);
     cli_json_count(&json, "contours", s->contours);
     cli_json_count(&json, "points", s->points);
@@ -105,6 +110,20 @@ static void print_json(const char *scene, const char *path, double height,
     cli_json_count(&json, "unsettled", s->unsettled);
     cli_json_number(&json, "smallest", s->smallest);
     cli_json_end(&json, '}');
+}
+
+/* Has the scene a part of that name? */
+static int check_part(cli_app *app, const char *scene, const csgm_field *field)
+{
+    const char *wanted = app->options->part;
+    size_t count;
+    if (!wanted)
+        return CLI_DONE;
+    const char **names = cli_part_names(field, &count);
+    int status = names ? cli_part_find(app, scene, wanted, names, count)
+                       : cli_usage_error(app, NULL, "out of memory");
+    free(names);
+    return status;
 }
 
 static int slice_scene(cli_app *app, const char *scene, csgm_layers_format format)
@@ -117,6 +136,8 @@ static int slice_scene(cli_app *app, const char *scene, csgm_layers_format forma
     int status = cli_work_load(app, &work, scene);
     if (status == CLI_DONE)
         status = cli_exit_status(csgm_field_compile(app->context, work.scene, &work.field));
+    if (status == CLI_DONE)
+        status = check_part(app, scene, work.field);
     if (status == CLI_DONE) {
         cli_interrupt_ask_first();
         csgm_status made =
@@ -131,7 +152,7 @@ static int slice_scene(cli_app *app, const char *scene, csgm_layers_format forma
     }
     cli_work_release(&work);
     if (status == CLI_DONE && app->options->json)
-        print_json(scene, path, options.height, &stats);
+        print_json(scene, path, &options, &stats);
     else if (status == CLI_DONE && !is_stdout)
         print_text(&stats);
     return status;
