@@ -36,7 +36,13 @@ typedef struct csgm_slice_options {
     double pixel;   /* > 0: the edge of a mask's pixel in millimetres, default 0.05 */
     bool sync;      /* default true: the file is on the disk before it has its name */
     csgm_monitor monitor; /* stage CSGM_STAGE_WRITE */
-    const char *part;     /* of this name alone; NULL (default): all of it */
+    /* Layers of different heights, from `height` to this: each as high as the cusp allows.
+     * > height; 0 (default): all are `height`. */
+    double most_height;
+    /* > 0 with most_height, else 0 (default): how far the steps of layers may stand off the
+     * surface, at right angles to it: height times |n_z| of the normals of the surface there. */
+    double cusp;
+    const char *part; /* of this name alone; NULL (default): all of it */
 } csgm_slice_options;
 
 CSGM_API csgm_slice_options csgm_slice_options_default(void);
@@ -48,7 +54,12 @@ typedef struct csgm_slice_stats {
                            layer shows */
     double smallest;    /* the edge of these */
     double tolerance;
-    double volume; /* of the layers' areas, each times its height */
+    double volume;          /* of the layers' areas, each times its height */
+    double lowest, highest; /* heights of layers */
+    /* Smallest cubes, of this edge, where normals are sampled for layers' heights, as their
+     * gradients have no bounds; elsewhere |n_z| is proven to be no more. */
+    uint64_t sampled;
+    double sampled_edge;
 } csgm_slice_stats;
 
 /* All zeros but struct_size. */

@@ -40,14 +40,22 @@ csgm_slice_stats csgm_slice_stats_default(void)
     return (csgm_slice_stats){.struct_size = sizeof(csgm_slice_stats)};
 }
 
+/* The same height for all layers, or a larger one and a cusp. */
+static bool is_range(const csgm_slice_options *o)
+{
+    bool is_one = !(o->most_height < 0 || o->most_height > 0) && !(o->cusp < 0 || o->cusp > 0);
+    return isfinite(o->most_height) && isfinite(o->cusp) &&
+           (is_one || (o->most_height > o->height && o->cusp > 0));
+}
+
 static bool adopt(csgm_slice_options *own, const csgm_slice_options *given,
                   csgm_layers_format format, const csgm_slice_stats *stats)
 {
     *own = csgm_slice_options_default();
     return csg_options_adopt(own, sizeof *own, given) && own->height > 0 && isfinite(own->height) &&
-           own->tolerance >= 0 && isfinite(own->tolerance) && (int)own->unit >= 0 &&
-           own->unit <= CSGM_UNIT_IN && own->pixel > 0 && isfinite(own->pixel) &&
-           (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
+           is_range(own) && own->tolerance >= 0 && isfinite(own->tolerance) &&
+           (int)own->unit >= 0 && own->unit <= CSGM_UNIT_IN && own->pixel > 0 &&
+           isfinite(own->pixel) && (int)format > CSGM_LAYERS_NONE && format < CSGM_LAYERS_COUNT &&
            csg_struct_is_known(stats, sizeof *stats);
 }
 

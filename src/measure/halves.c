@@ -431,6 +431,13 @@ static bool join_smoothly(walker *w, const operand *of, uint32_t count, const bl
     return true;
 }
 
+bool csg_halves_joins_sharply(const csg_tape *tape, const csg_tape_node *node)
+{
+    float n = tape->parameters[node->join_parameters + CSG_OPERATOR_N];
+    return node->join_blend == CSG_BLEND_SHARP ||
+           (node->join_blend == CSG_BLEND_ORTHOGONAL && !(n > 0) && !(n < 0));
+}
+
 static bool join_siblings(walker *w, uint32_t index)
 {
     const csg_tape_node *node = &w->tape->nodes[index];
@@ -439,8 +446,7 @@ static bool join_siblings(walker *w, uint32_t index)
     const operand *a = &w->stack[w->top - 2];
     bool is_orthogonal = node->join_blend == CSG_BLEND_ORTHOGONAL;
     double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
-    if (node->join_blend == CSG_BLEND_SHARP ||
-        (is_orthogonal && !(b.n > 0) && !(b.n < 0))) { /* of the same sign as a sharp one */
+    if (csg_halves_joins_sharply(w->tape, node)) {
         if (join_sharply(w, node, is_orthogonal))
             return true;
     } else if (node->join_blend < CSG_BLEND_COUNT && csg_blend_is_convex(node->join_blend) &&

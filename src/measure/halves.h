@@ -31,6 +31,10 @@ typedef enum csg_truth { CSG_TRUTH_NO, CSG_TRUTH_YES, CSG_TRUTH_OPEN } csg_truth
 bool csg_halves_find(const csg_kernel *kernel, const csg_tape *tape, const double c[3], double half,
                      float *scratch, size_t scratch_floats, csg_halves *out);
 
+/* Is the zero set of a node's join that of its operands, or parts of it: is it sharp, or an
+ * orthogonal one that no offset rounds? */
+bool csg_halves_joins_sharply(const csg_tape *tape, const csg_tape_node *node);
+
 csg_truth csg_halves_evaluate(const csg_halves *halves, const csg_truth planes[CSG_HALVES_MOST]);
 
 /* The same, and how far each piece's gradients stray from its plane's slope, wherever that can be

@@ -12,9 +12,10 @@
 #include "base/trace.h"
 #include "io/units.h"
 #include "slice/contours.h"
+#include "slice/heights.h"
 
 /* Slabs for each thread at a time: their pages wait for each other in memory. */
-enum { SLABS_AT_ONCE = 4, MOST_LAYERS = 10000000 };
+enum { SLABS_AT_ONCE = 4 };
 static const double SHARE_OF_LONGEST = 1e-4; /* the tolerance where none is given */
 
 typedef struct slab_page {
@@ -37,7 +38,7 @@ typedef struct slice_job {
     const csg_layers_receiver *receiver;
     csg_layers_head head;
     double *z; /* of the layers' middles, in the field's frame */
-    double bottom, height;
+    csg_slice_heights heights;
     slice_worker *workers;
     uint32_t worker_count;
     slab_page *pages;
@@ -64,21 +65,25 @@ static double area_of(const csg_outline *outline)
     return 0.5 * twice;
 }
 
+/* Where a layer between these is cut. */
+static double middle_of(const double ends[2])
+{
+    return 0.5 * (ends[0] + ends[1]);
+}
+
 static bool put_layer(slice_job *job, slice_worker *w, slab_page *slab, size_t number)
 {
     csg_outline *o = &w->outline;
+    const double *ends = job->heights.ends + number;
     o->point_count = o->loop_count = 0;
     if (!csg_slice_contours_make(&w->contours, number, o))
         return false;
-    csg_sliced_layer layer = {.number = number,
-                              .low = job->bottom + (double)number * job->height,
-                              .high = job->bottom + (double)(number + 1) * job->height,
-                              .at = job->bottom + ((double)number + 0.5) * job->height,
-                              .contours = *o};
+    csg_sliced_layer layer = {
+        .number = number, .low = ends[0], .high = ends[1], .at = middle_of(ends), .contours = *o};
     job->receiver->layer(job->receiver->user, &slab->page, &job->head, &layer);
     slab->contours += o->loop_count;
     slab->points += o->point_count;
-    slab->area += area_of(o) * job->height;
+    slab->area += area_of(o) * (ends[1] - ends[0]);
     return !slab->page.failed;
 }
 
@@ -165,24 +170,22 @@ static csgm_status check_solid(csgm_context *context, csg_box bounds)
     return CSGM_ERR_SCENE;
 }
 
-static csgm_status place_layers(slice_job *job, csg_box bounds, double height)
+static csgm_status place_layers(slice_job *job, const csgm_field *field,
+                                const csgm_slice_options *options)
 {
-    double count = ceil((bounds.max.z - bounds.min.z) / height - 1e-6);
-    job->bottom = bounds.min.z;
-    job->height = height;
-    job->head.bottom = job->bottom;
-    job->head.count = count > 1 ? (size_t)fmin(count, 2.0 * MOST_LAYERS) : 1;
-    job->head.top = job->bottom + (double)job->head.count * height;
-    if (job->head.count > MOST_LAYERS) {
-        csg_diag_plain(&job->context->diags, CSG_DIAG_TOO_FINE, NULL, NULL,
-                       "%g layers of %g: %d is the most", count, height, MOST_LAYERS);
-        return CSGM_ERR_LIMIT;
-    }
-    job->z = csg_memory_alloc(&job->context->memory, job->head.count * sizeof *job->z);
+    csg_slice_heights *h = &job->heights;
+    csgm_status status = csg_slice_heights_find(h, job->context, field, job->watch, options);
+    if (status != CSGM_OK)
+        return status;
+    job->head.count = h->count;
+    job->head.bottom = h->ends[0];
+    job->head.top = h->ends[h->count];
+    job->head.lowest = h->lowest;
+    job->z = csg_memory_alloc(&job->context->memory, h->count * sizeof *job->z);
     if (!job->z)
         return csg_context_no_memory(job->context);
-    for (size_t i = 0; i < job->head.count; i++)
-        job->z[i] = job->bottom + ((double)i + 0.5) * height;
+    for (size_t i = 0; i < h->count; i++)
+        job->z[i] = middle_of(h->ends + i) - field->center.z;
     return CSGM_OK;
 }
 
@@ -220,6 +223,22 @@ static void release_rooms(slice_job *job)
     csg_memory_release(memory, job->workers, job->worker_count * sizeof *job->workers);
     csg_memory_release(memory, job->pages, job->page_count * sizeof *job->pages);
     csg_memory_release(memory, job->z, job->head.count * sizeof *job->z);
+    csg_slice_heights_release(&job->heights, memory);
+}
+
+static csgm_status make_layers(slice_job *job, const csgm_field *field, csgm_slice_stats *stats)
+{
+    const csg_layers_receiver *r = job->receiver;
+    csg_slice_plan_make(&job->plan, job->context, field, job->watch, stats->tolerance, job->z,
+                        job->head.count);
+    stats->smallest = job->plan.step;
+    stats->lowest = job->heights.lowest;
+    stats->highest = job->heights.highest;
+    stats->sampled = job->heights.sampled;
+    stats->sampled_edge = job->heights.edge;
+    if (!create_rooms(job))
+        return csg_context_no_memory(job->context);
+    return r->begin(r->user, &job->head) ? make_slabs(job, stats) : CSGM_ERR_IO;
 }
 
 csgm_status csg_slice_field(csgm_context *context, const csgm_field *field,
@@ -230,8 +249,6 @@ csgm_status csg_slice_field(csgm_context *context, const csgm_field *field,
     csg_mesh_watch watch = {0};
     slice_job job = {.context = context, .watch = &watch, .receiver = receiver};
     csgm_status status = check_solid(context, field->bounds);
-    if (status == CSGM_OK)
-        status = place_layers(&job, field->bounds, options->height);
     if (status != CSGM_OK)
         return status;
     double longest = csg_box_longest_side(field->bounds);
@@ -240,16 +257,9 @@ csgm_status csg_slice_field(csgm_context *context, const csgm_field *field,
     job.head.box = field->bounds;
     job.head.tolerance = stats->tolerance;
     job.head.scale = options->unit ? csg_unit_metres(options->unit) * 1000 : 1;
-    for (size_t i = 0; i < job.head.count; i++)
-        job.z[i] -= field->center.z;
-    csg_slice_plan_make(&job.plan, context, field, &watch, stats->tolerance, job.z, job.head.count);
-    stats->smallest = job.plan.step;
-    if (!create_rooms(&job))
-        status = csg_context_no_memory(context);
-    else if (!receiver->begin(receiver->user, &job.head))
-        status = CSGM_ERR_IO;
-    else
-        status = make_slabs(&job, stats);
+    status = place_layers(&job, field, options);
+    if (status == CSGM_OK)
+        status = make_layers(&job, field, stats);
     release_rooms(&job);
     return status;
 }

@@ -45,6 +45,13 @@ def svg_layers(path):
     return layers
 
 
+def svg_heights(path):
+    """(bottom, top) of each layer."""
+    groups = xml.etree.ElementTree.parse(path).getroot().iter(SVG + "g")
+    said = [(float(group.get(SLIC3R + "z")), float(group.get(SLIC3R + "slice-height"))) for group in groups]
+    return [(z - height / 2, z + height / 2) for z, height in said]
+
+
 def cli_layers(path):
     """(top, loops) of each layer of a CLI file, in millimetres, and the lines of its head; turns and counts must agree."""
     with open(path, encoding="ascii") as file:
@@ -228,6 +235,36 @@ class Slice(unittest.TestCase):
         self.assertIn("too many for an archive", result.stderr)
         self.assertEqual(os.listdir(self.folder), ["scene.txt"])
 
+    def test_heights_follow_the_surface(self):
+        scene, how = "translate([0, 0, 20]) sphere(20);\n", ("--layer", 0.1, "--most-layer", 0.5, "--cusp", 0.1, "-e", 0.01)
+        out, result = self.slice(scene, *how, "--json")
+        said, heights = json.loads(result.stdout), svg_heights(out)
+        self.assertEqual((said["layers"], said["sampled"], said["most_layer"], said["cusp"]), (len(heights), 0, 0.5, 0.1))
+        for (low, high), (above, _) in zip(heights, heights[1:]):
+            level = max(abs(low - 20), abs(high - 20)) / 20
+            self.assertAlmostEqual(high, above, 4)
+            self.assertLess((high - low) * level, 0.1001)
+            self.assertTrue(0.0999 < high - low < 0.5001)
+        self.assertLess(len(heights), 260)  # of 400
+        self.assertAlmostEqual(said["lowest"], 0.1, 6)
+        self.assertAlmostEqual(said["highest"], 0.5, 6)
+        self.assertAlmostEqual(said["volume"], 4 / 3 * math.pi * 8000, delta=40)
+        tops, _ = cli_layers(self.slice(scene, *how, name="layers.cli")[0])
+        stack = slices_3mf(self.slice(scene, *how, name="layers.3mf")[0])
+        for (low, high), (top, _), (bottom, ztop, _) in zip(heights, tops, stack):
+            self.assertLess(max(abs(high - top), abs(low - bottom), abs(high - ztop)), 1e-4)
+        files = set()
+        for threads in (1, 3):
+            with open(self.slice(scene, *how, "-j", threads)[0], "rb") as file:
+                files.add(file.read())
+        self.assertEqual(len(files), 1)
+        _, result = self.slice(scene, *how)
+        self.assertIn("from 0.1 to 0.5 high", result.stdout.decode())
+        self.assertNotIn("sampled", result.stdout.decode())
+        soft = os.path.join(cli.SCENES, "tour", "11-soft-solids.txt")  # whose gradients have no bounds
+        result = cli.run("slice", soft, "--layer", 4, "--most-layer", 8, "--cusp", 2, "-e", 2, "-o", os.path.join(self.folder, "soft.svg"))
+        self.assertRegex(result.stdout.decode(), r"sampled in [1-9][0-9]* cubes of [0-9.]+, where normals have no bounds")
+
     def test_one_part(self):
         scene = 'part("lid") translate([0, 0, 5]) cube([4, 5, 1]);\npart("box") cube([3, 2, 4]);\n'
         out, result = self.slice(scene, "--layer", 0.5, "--part", "lid", "--json")
@@ -274,6 +311,10 @@ class Slice(unittest.TestCase):
             (["--layer", "nan", "-o", "x.svg"], "--layer"),
             (["--layer", "1", "-e", "0", "-o", "x.svg"], "--tolerance"),
             (["--layer", "1", "--pixel", "0", "-o", "x.zip"], "--pixel"),
+            (["--layer", "1", "--cusp", "0.1", "-o", "x.svg"], "go together"),
+            (["--layer", "1", "--most-layer", "2", "-o", "x.svg"], "go together"),
+            (["--layer", "1", "--most-layer", "1", "--cusp", "0.1", "-o", "x.svg"], "must be more than --layer"),
+            (["--layer", "1", "--most-layer", "2", "--cusp", "0", "-o", "x.svg"], "--cusp"),
             (["--layer", "1"], "no output file"),
             (["--layer", "1", "-o", "x.gcode"], "tells no format of layers"),
             (["--layer", "1", "-o", "x", "-f", "stl"], "no format 'stl'"),

@@ -53,11 +53,12 @@ const csg_layers_writer *csg_layers_writer_of(csgm_layers_format format)
     return rows[format].writer;
 }
 
-/* A thousandth of the tolerance is the last digit: points that are apart stay apart. */
+/* A thousandth of the tolerance is the last digit: points that are apart stay apart; of the lowest
+ * layer's height, if that is less: so do layers. */
 csg_page csg_layers_page(csg_memory *memory, const csg_layers_head *head)
 {
     csg_page page = {.memory = memory, .scale = head->scale};
-    double digits = 3 - floor(csg_log10(head->tolerance * head->scale));
+    double digits = 3 - floor(csg_log10(fmin(head->tolerance, head->lowest) * head->scale));
     page.decimals = (int)fmin(fmax(digits, 0), 15);
     page.box = (csg_box){csg_vec3_scale(head->box.min, head->scale),
                          csg_vec3_scale(head->box.max, head->scale)};

@@ -24,6 +24,7 @@ typedef struct csg_layers_head {
     csg_box box;        /* of the solid */
     double tolerance;   /* of the contours */
     double scale;       /* from scene units to millimetres */
+    double lowest;      /* layer's height */
     double bottom, top; /* of all layers */
     size_t count;
     /* of masks, in millimetres: pixels, the upper left corner, and an entry for each layer that its

@@ -25,6 +25,10 @@ static csgm_slice_options slice_options(cli_app *app)
     const cli_options *o = app->options;
     csgm_slice_options options = csgm_slice_options_default();
     options.height = o->layer;
+    if (o->given[CLI_OPTION_most_layer]) {
+        options.most_height = o->most_layer;
+        options.cusp = o->cusp;
+    }
     if (o->given[CLI_OPTION_tolerance])
         options.tolerance = o->tolerance;
     if (o->given[CLI_OPTION_pixel])
@@ -76,17 +80,28 @@ static int check_usage(cli_app *app, csgm_layers_format *format)
                                o->outputs.count ? "layers go to one file" : "no output file");
     if (!o->given[CLI_OPTION_layer])
         return cli_usage_error(app, "as --layer 0.2", "how high is a layer?");
+    if (o->given[CLI_OPTION_cusp] != o->given[CLI_OPTION_most_layer])
+        return cli_usage_error(app, "as --layer 0.05 --most-layer 0.3 --cusp 0.02",
+                               "--most-layer and --cusp go together");
+    if (o->given[CLI_OPTION_most_layer] && !(o->most_layer > o->layer))
+        return cli_usage_error(app, NULL, "--most-layer must be more than --layer");
     int status = find_format(app, o->outputs.items[0], format);
     return status == CLI_DONE ? cli_outputs_check_place(app, o->outputs.items[0]) : status;
 }
 
 static void print_text(const csgm_slice_stats *s)
 {
-    printf("layers    %llu\n", (unsigned long long)s->layers);
+    printf("layers    %llu", (unsigned long long)s->layers);
+    if (s->highest > s->lowest * (1 + 1e-9))
+        printf(", from %g to %g high", s->lowest, s->highest);
+    printf("\n");
     printf("contours  %llu, of %llu points\n", (unsigned long long)s->contours,
            (unsigned long long)s->points);
     printf("within    %g; what is not shown is thinner\n", s->tolerance);
     printf("volume    %g\n", s->volume);
+    if (s->sampled)
+        printf("heights   sampled in %llu cubes of %g, where normals have no bounds\n",
+               (unsigned long long)s->sampled, s->sampled_edge);
     if (s->unsettled)
         printf("unsettled %llu cubes of %g: something thinner than %g may be there\n",
                (unsigned long long)s->unsettled, s->smallest, s->tolerance);
@@ -102,6 +117,13 @@ static void print_json(const char *scene, const char *path, const csgm_slice_opt
         cli_json_string(&json, "part", options->part);
     cli_json_string(&json, "file", path);
     cli_json_number(&json, "layer", options->height);
+    if (options->most_height > 0) {
+        cli_json_number(&json, "most_layer", options->most_height);
+        cli_json_number(&json, "cusp", options->cusp);
+        cli_json_number(&json, "lowest", s->lowest);
+        cli_json_number(&json, "highest", s->highest);
+        cli_json_count(&json, "sampled", s->sampled);
+    }
     cli_json_count(&json, "layers", s->layers);
     cli_json_count(&json, "contours", s->contours);
     cli_json_count(&json, "points", s->points);
