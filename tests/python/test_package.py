@@ -20,8 +20,8 @@ from conftest import ROOT, csgmesh_program
 EXAMPLES = re.findall(r"^```python\n(.*?)^```\n(?:\n^```text\n(.*?)^```\n)?", (ROOT / "docs" / "python.md").read_text(), re.S | re.M)
 
 
-def test_there_are_eleven_examples():
-    assert len(EXAMPLES) == 11
+def test_there_are_twelve_examples():
+    assert len(EXAMPLES) == 12
 
 
 @pytest.mark.parametrize("code, output", EXAMPLES, ids=range(1, len(EXAMPLES) + 1))

@@ -14,6 +14,7 @@ docs/python.md tells of all of it. Lengths are scene units, z is up.
 from . import _core, _modules, functions
 from ._errors import (ArgumentError, Diagnostic, Error, FileError, FormatError, InternalError, LimitError, MissingFileError,
                       OutOfMemoryError, SceneError, SceneSyntaxError, SceneWarning, UnsupportedError)
+from ._layers import slice as slice  # pylint: disable=redefined-builtin
 from ._modules import Solid
 from ._results import (Clearance, Diff, Mesh, Part, Scene, check, clear, diff, load, measure, mesh, parse, read, render, write,
                        write_image)
@@ -31,6 +32,7 @@ def formats() -> "list[dict[str, object]]":
     return _core.formats()
 
 
+# not slice(), which would hide Python's own from who imports *
 __all__ = [
     "ArgumentError", "Clearance", "Diagnostic", "Diff", "Error", "Expression", "FileError", "FormatError", "InternalError", "LimitError",
     "Mesh", "MissingFileError", "OutOfMemoryError", "Part", "Scene", "SceneError", "SceneSyntaxError", "SceneWarning", "Solid",

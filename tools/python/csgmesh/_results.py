@@ -673,18 +673,22 @@ def clear(source: Union[str, "os.PathLike[str]", SolidBase], poses: Sequence[Map
     return [Clearance(**pair) for pair in core.pairs()]
 
 
-def _document() -> None:
+def document(function: Any, options: Sequence[str]) -> None:
     """Docstrings end with the options that a function takes."""
+    names = textwrap.fill(", ".join([*options, "progress", "echo", *_core.option_names["run"]]), 110, initial_indent="    ",
+                          subsequent_indent="    ")
+    function.__doc__ = f"{function.__doc__}\n\n    Options:\n{names}"
+
+
+def _document_all() -> None:
     of = _core.option_names
-    common = ["progress", "echo", *of["run"]]
     scene = [name for name in of["scene"] if name != "only_check"]
     documented: list[tuple[Any, list[str]]] = [
         (load, scene), (parse, scene), (check, scene), (mesh, [*of["mesh"], *scene]), (Scene.mesh, of["mesh"]),
         (write, [*of["mesh"], *of["write"], *scene]), (Mesh.write, of["write"]), (render, [*of["render"], *scene]),
         (diff, [*of["diff"], "field", "mesh"]), (read, []), (measure, [*of["measure"], *scene]), (clear, [*of["clear"], *scene]), (Scene.field, [])]
     for function, options in documented:
-        names = textwrap.fill(", ".join([*options, *common]), 110, initial_indent="    ", subsequent_indent="    ")
-        function.__doc__ = f"{function.__doc__}\n\n    Options:\n{names}"
+        document(function, options)
 
 
-_document()
+_document_all()

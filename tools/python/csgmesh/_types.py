@@ -165,6 +165,18 @@ class MeasureOptions(SceneOptions, total=False):
     most_cubes: int
 
 
+class SliceOptions(SceneOptions, total=False):
+    """How a solid is cut into layers: csgm_slice_options."""
+
+    layer: Union[float, Sequence[float]]  # the height of a layer; or the least and the largest one, with cusp
+    cusp: float  # how far the steps of layers may stand off the surface
+    tolerance: float  # how far contours may be from the surface (a 10000th of the longest side)
+    unit: Literal["none", "mm", "cm", "m", "in"]
+    pixel: float  # the edge of a mask's pixel in millimetres (0.05)
+    sync: bool
+    part: str  # of this name alone
+
+
 class ClearOptions(SceneOptions, total=False):
     """What is to be known of parts: csgm_clear_options."""
 

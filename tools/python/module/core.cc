@@ -71,4 +71,5 @@ NB_MODULE(_core, module)
     define_pictures(module);
     define_diffs(module);
     define_measures(module);
+    define_layers(module);
 }

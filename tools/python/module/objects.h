@@ -62,5 +62,6 @@ void define_meshes(nb::module_ &module);
 void define_pictures(nb::module_ &module);
 void define_diffs(nb::module_ &module);
 void define_measures(nb::module_ &module);
+void define_layers(nb::module_ &module);
 
 #endif

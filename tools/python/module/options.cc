@@ -409,6 +409,31 @@ const Row<csgm_clear_options> clear_rows[] = {
 };
 #undef OF
 
+/* The height of all layers, or that of the lowest and that of the highest. */
+void take_layer(csgm_slice_options &options, nb::handle value, const char *name, Keep &keep)
+{
+    double heights[2];
+    if (PyTuple_Check(value.ptr()) || PyList_Check(value.ptr())) {
+        take_numbers(heights, 2, value, name, "a number, or the least and the largest height");
+        options.height = heights[0];
+        options.most_height = heights[1];
+    } else {
+        take(options.height, value, name, keep);
+    }
+}
+
+#define OF(member) MEMBER(csgm_slice_options, member)
+const Row<csgm_slice_options> slice_rows[] = {
+    {"layer", take_layer},
+    OF(cusp),
+    OF(tolerance),
+    CHOICE(csgm_slice_options, "unit", unit, "none", "mm", "cm", "m", "in"),
+    OF(pixel),
+    OF(sync),
+    OF(part),
+};
+#undef OF
+
 } // namespace
 
 const char *Keep::text(nb::handle value, const char *name)
@@ -463,6 +488,11 @@ void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep)
     fill(options, given, clear_rows, keep);
 }
 
+void fill_slice_options(csgm_slice_options &options, nb::dict given, Keep &keep)
+{
+    fill(options, given, slice_rows, keep);
+}
+
 void define_options(nb::module_ &module)
 {
     nb::dict all;
@@ -474,5 +504,6 @@ void define_options(nb::module_ &module)
     all["diff"] = names(diff_rows);
     all["measure"] = names(measure_rows);
     all["clear"] = names(clear_rows);
+    all["slice"] = names(slice_rows);
     module.attr("option_names") = all;
 }

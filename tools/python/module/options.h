@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "csgmesh/clearance.h"
+#include "csgmesh/slicing.h"
 
 namespace nb = nanobind;
 
@@ -33,6 +34,7 @@ void fill_render_options(csgm_render_options &options, nb::dict given, Keep &kee
 void fill_diff_options(csgm_diff_options &options, nb::dict given, Keep &keep);
 void fill_measure_options(csgm_measure_options &options, nb::dict given, Keep &keep);
 void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep);
+void fill_slice_options(csgm_slice_options &options, nb::dict given, Keep &keep);
 
 /* option_names(kind): for those who check names before. */
 void define_options(nb::module_ &module);
