@@ -4,9 +4,9 @@ import base64
 import json
 import os
 import struct
-import zlib
 
 import cli
+import png
 
 HAS_PNG = cli.has_library("libpng")
 SMALL = ("--size", "64x48")
@@ -22,29 +22,9 @@ def read_ppm(data):
 
 
 def read_png(data):
-    """(width, height, channels, pixels) of the pictures that csgmesh writes: 8 bits, not interlaced."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, chunks = 8, {}
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
-        chunks[kind] = chunks.get(kind, b"") + body
-        at += 12 + length
-    width, height, depth, kind = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
-    assert depth == 8 and set(chunks) <= {b"IHDR", b"IDAT", b"IEND", b"sRGB", b"gAMA", b"cHRM"}
-    channels = {2: 3, 6: 4}[kind]
-    raw, pixels, before = zlib.decompress(chunks[b"IDAT"]), bytearray(), bytes(width * channels)
-    for y in range(height):
-        line = bytearray(raw[y * (width * channels + 1):(y + 1) * (width * channels + 1)])
-        how, line = line[0], line[1:]
-        for i in range(len(line)):
-            left = line[i - channels] if i >= channels else 0
-            assert how in (0, 1, 2)
-            line[i] = (line[i] + (left if how == 1 else before[i] if how == 2 else 0)) & 255
-        pixels += line
-        before = line
-    return width, height, channels, bytes(pixels)
+    """(width, height, channels, pixels)."""
+    width, height, channels, rows = png.read(data)
+    return width, height, channels, b"".join(rows)
 
 
 class Render(cli.CliTest):

@@ -6,14 +6,13 @@ import os
 import re
 import signal
 import subprocess
-import struct
 import tempfile
 import unittest
 import xml.etree.ElementTree
 import zipfile
-import zlib
 
 import cli
+import png
 
 SVG = "{http://www.w3.org/2000/svg}"
 SLIC3R = "{http://slic3r.org/namespaces/slic3r}"
@@ -103,21 +102,10 @@ def slices_3mf(path):
 
 
 def grey_png(data):
-    """(width, height, rows) of a grey PNG without filters; sums must agree."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, packed = 8, b""
-    while at < len(data):
-        length, = struct.unpack(">I", data[at:at + 4])
-        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + length]
-        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
-        if kind == b"IHDR":
-            width, height = struct.unpack(">II", body[:8])
-            assert body[8:] == b"\x08\0\0\0\0"
-        packed += body if kind == b"IDAT" else b""
-        at += length + 12
-    raw = zlib.decompress(packed)
-    assert len(raw) == (width + 1) * height and not any(raw[::width + 1])
-    return width, height, [raw[y * (width + 1) + 1:(y + 1) * (width + 1)] for y in range(height)]
+    """(width, height, rows) of a grey PNG."""
+    width, height, channels, rows = png.read(data)
+    assert channels == 1
+    return width, height, rows
 
 
 class Slice(unittest.TestCase):
