@@ -15,27 +15,55 @@ static double norm_of(const double v[3])
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+/* Of a tape of one node, with how far floats may be off. */
+static void value_at(const csg_kernel *kernel, const csg_tape *tape, const float at[3],
+                     float *scratch, double *value, double *doubt)
+{
+    float low[CSG_OCTANTS], high[CSG_OCTANTS], x[3][CSG_OCTANTS];
+    for (int axis = 0; axis < 3; axis++)
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            x[axis][o] = at[axis];
+    kernel->intervals(tape, x[0], x[1], x[2], 0, NULL, low, high, scratch);
+    *value = 0.5 * ((double)high[0] + (double)low[0]);
+    *doubt = 0.5 * ((double)high[0] - (double)low[0]);
+}
+
 static bool find_of_leaf(const csg_kernel *kernel, const csg_tape *tape, const double c[3],
                          double radius, float *scratch, csg_enclosure *out)
 {
     const csg_tape_node *leaf = tape->nodes;
     const float at[3] = {(float)c[0], (float)c[1], (float)c[2]};
-    float low[CSG_OCTANTS], high[CSG_OCTANTS], x[3][CSG_OCTANTS];
     csg_cone_balls balls = {.count = 0};
+    double doubt;
     if (tape->count != 1 || leaf->warp || !csg_op_has(leaf->op, CSG_TRAIT_STEADY) ||
         !csg_cone_add_leaf(&balls, tape, leaf, at, radius) || balls.count != 1)
         return false;
     const csg_cone_ball *ball = &balls.items[0];
-    for (int axis = 0; axis < 3; axis++)
-        for (int o = 0; o < CSG_OCTANTS; o++)
-            x[axis][o] = at[axis];
-    kernel->intervals(tape, x[0], x[1], x[2], 0, NULL, low, high, scratch);
-    double rounding = 0.5 * ((double)high[0] - (double)low[0]) + CSG_ENCLOSURE_ROUNDING * radius;
-    out->value = 0.5 * ((double)high[0] + (double)low[0]);
+    value_at(kernel, tape, at, scratch, &out->value, &doubt);
+    double rounding = doubt + CSG_ENCLOSURE_ROUNDING * radius;
     out->below = out->above = rounding + 0.5 * ball->spread * radius;
     out->stray = ball->spread + CSG_ENCLOSURE_ROUNDING;
     out->is_convex = false;
     memcpy(out->slope, ball->at, sizeof out->slope);
+    return true;
+}
+
+/* A formula whose second derivatives are bounded. */
+static bool find_of_formula(const csg_kernel *kernel, const csg_tape *tape, const double c[3],
+                            double radius, csg_enclosure *out, float *scratch)
+{
+    const float at[3] = {(float)c[0], (float)c[1], (float)c[2]};
+    csg_cone_ball g;
+    double bend, value, doubt;
+    if (tape->count != 1 || !csg_cone_find_bend(tape, tape->nodes, at, radius, &g, &bend))
+        return false;
+    value_at(kernel, tape, at, scratch, &value, &doubt);
+    double spread = g.spread + CSG_ENCLOSURE_ROUNDING * norm_of(g.at);
+    out->value = value;
+    out->below = out->above = doubt + (spread + 0.5 * bend * radius) * radius;
+    out->stray = spread + bend * radius;
+    out->bend = bend;
+    memcpy(out->slope, g.at, sizeof out->slope);
     return true;
 }
 
@@ -76,7 +104,9 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     csg_gradients gradients;
     const csg_vec3 at = csg_vec3_make(c[0], c[1], c[2]);
     const csg_gradients_region cube = {{at, at, at}, at, 0, radius / sqrt(3.0)};
-    if (find_of_leaf(kernel, tape, c, radius, scratch, out))
+    out->bend = 0;
+    if (find_of_leaf(kernel, tape, c, radius, scratch, out) ||
+        find_of_formula(kernel, tape, c, radius, out, scratch))
         return isfinite(out->value + out->below + out->above);
     if (may_jump(tape, c, radius) ||
         !csg_gradients_find(kernel, tape, &cube, scratch, scratch_floats, &gradients))

@@ -14,6 +14,7 @@ typedef struct csg_enclosure {
     double below, above;
     double stray;   /* > 0: no gradient of the field is farther from `slope`; 0: not known */
     bool is_convex; /* where the field is positive, or where it is not, is convex */
+    double bend; /* > 0: gradients turn by no more, per length between two points; 0: not known */
 } csg_enclosure;
 
 /* Of gradients, which are found with floats here and there: primitives allow themselves as much. */
@@ -29,8 +30,8 @@ static inline double csg_enclosure_radius(double half)
  *   the mean value form, with all gradients within `stray` of `slope` (mesh/distance/slopes.h):
  *     off by stray times the distance from c;
  *   for one primitive whose gradients stray in proportion to the distance from c
- * (CSG_TRAIT_STEADY), Taylor's: off by half of that. False: nothing is known. scratch: as the
- * kernel needs it. */
+ * (CSG_TRAIT_STEADY), and for a formula with bounded second derivatives, Taylor's: off by half of
+ * that. False: nothing is known. scratch: as the kernel needs it. */
 bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const double c[3],
                         double half, float *scratch, size_t scratch_floats, csg_enclosure *out);
 

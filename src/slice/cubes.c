@@ -44,7 +44,10 @@ void csg_slice_cubes_release(csg_slice_cubes *c)
  * all gradients are within s of one, of length g: along a chord, at whose ends the field is 0, it
  * changes at rates that differ by 2 s at most, so that it is s / 2 times the length at most; where
  * it is negative at all corners of a square, it is s / 2 times the edge at most on its sides, and
- * as much more between two of these. The distance to the surface is that by g - s at most. */
+ * as much more between two of these. Where gradients turn by b per length at most the field leaves
+ * a chord of length l by b l^2 / 8, and the sides of a square and a line between two of them by as
+ * much of its edge each: a quarter of b times the edge's square. The distance to the surface is
+ * that by g - s at most. */
 static double strays_by(const csg_enclosure *e, double edge)
 {
     double slope =
@@ -52,7 +55,8 @@ static double strays_by(const csg_enclosure *e, double edge)
     double sheet = (e->below + e->above) / slope;
     if (!(e->stray > 0 && e->stray < slope))
         return sheet;
-    return fmin(sheet, edge * e->stray / (slope - e->stray));
+    double rise = e->bend > 0 ? 0.25 * edge * edge * e->bend : edge * e->stray;
+    return fmin(sheet, rise / (slope - e->stray));
 }
 
 /* Two pieces that face each other may be the two sides of something thin. */

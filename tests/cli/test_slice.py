@@ -223,6 +223,29 @@ class Slice(unittest.TestCase):
         self.assertIn("too many for an archive", result.stderr)
         self.assertEqual(os.listdir(self.folder), ["scene.txt"])
 
+    def test_a_gyroid_by_its_formula(self):
+        """Its surface is |F| = level; chords are within the tolerance of it, but for the cube that it is cut by."""
+        cell, thickness, within = 10, 1, 0.02
+        out, _ = self.slice(f"intersection() {{ cube([12, 11, 1]); gyroid(cell = {cell}, thickness = {thickness}); }}\n",
+                                 "--layer", 0.25, "-e", within)
+        wave = 2 * math.pi / cell
+        level, worst = thickness / 2 * 1.533 * wave, 0
+        for z, loops in svg_layers(out):
+            for loop in loops:
+                for (a, b), (c, d) in zip(loop, loop[1:] + loop[:1]):
+                    for share in (0, 0.25, 0.5, 0.75):
+                        x, y = a + share * (c - a), b + share * (d - b)
+                        if min(x, 12 - x, y, 11 - y) < within:
+                            continue
+                        u, v, w = wave * x, wave * y, wave * z
+                        value = math.sin(u) * math.cos(v) + math.sin(v) * math.cos(w) + math.sin(w) * math.cos(u)
+                        slope = (math.cos(u) * math.cos(v) - math.sin(w) * math.sin(u), math.cos(v) * math.cos(w) - math.sin(u) * math.sin(v),
+                                 math.cos(w) * math.cos(u) - math.sin(v) * math.sin(w))
+                        off = abs(abs(value) - level) / (wave * math.hypot(*slope))
+                        self.assertLess(off, within if share else 1.02e-2 * within)
+                        worst = max(worst, off)
+        self.assertGreater(worst, 0.2 * within)
+
     def test_heights_follow_the_surface(self):
         scene, how = "translate([0, 0, 20]) sphere(20);\n", ("--layer", 0.1, "--most-layer", 0.5, "--cusp", 0.1, "-e", 0.01)
         out, result = self.slice(scene, *how, "--json")

@@ -11,6 +11,7 @@
 #include "measure/section.h"
 #include "mesh/mesh_support.h"
 #include "scene/primitives/kinds.h"
+#include "scene/random_formula.h"
 
 enum { CUBES = 120, POINTS = 60 };
 
@@ -231,6 +232,73 @@ static void capsules_hold_on_their_axes(void **state)
     assert_true(seen.inside > 2000 * test_times);
 }
 
+/* ---- formulas ----------------------------------------------------------------------------------
+ */
+
+static csg_vec3 any_in_cube(csg_random *random, double half)
+{
+    return csg_vec3_make(csg_random_uniform(random, -half, half),
+                         csg_random_uniform(random, -half, half),
+                         csg_random_uniform(random, -half, half));
+}
+
+/* The field between its planes, gradients within the stray, and no two of them farther from each
+ * other than the bend allows. */
+static void check_bend(const mesh_case *m, csg_random *random, const double c[3], double half,
+                       const csg_enclosure *e)
+{
+    csg_vec3 center = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
+    const csg_vec3 slope = csg_vec3_make(e->slope[0], e->slope[1], e->slope[2]);
+    for (int i = 0; i < POINTS / 2; i++) {
+        csg_vec3 p = any_in_cube(random, half), q = any_in_cube(random, half);
+        csg_sample f = test_sample(m->scene, csg_vec3_add(center, p));
+        csg_sample g = test_sample(m->scene, csg_vec3_add(center, q));
+        double off = f.value - e->value - csg_vec3_dot(slope, p), rounding = 2e-6;
+        double length = csg_vec3_norm(csg_vec3_sub(p, q));
+        double turn = csg_vec3_norm(csg_vec3_sub(f.gradient, g.gradient));
+        double stray = csg_vec3_norm(csg_vec3_sub(f.gradient, slope));
+        if (!(off <= e->above + rounding && off >= -e->below - rounding))
+            fail_msg("off by %g, not by %g or %g at most", off, e->above, e->below);
+        if (!(turn <= e->bend * length * (1 + 1e-6) + 1e-7 && stray <= e->stray + 1e-7))
+            fail_msg("turns by %g over %g and strays by %g, not by %g a length and %g", turn,
+                     length, stray, e->bend, e->stray);
+    }
+}
+
+static void formulas_bend(void **state)
+{
+    uint32_t known = 0;
+    for (uint64_t i = 0; i < 200 * test_times; i++) {
+        csg_random random = {.state = 21000 + test_first_seed + i};
+        csg_formula_step steps[TEST_MOST_STEPS];
+        const csg_field_domain domain = {{{-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}}, false, 100, true};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        uint32_t count =
+            test_random_formula(&m.context.memory, &random, 1 + (unsigned)(i % 5), true, steps);
+        csg_node_id id = csg_build_field(&m.builder, steps, count, &domain, NOWHERE);
+        mesh_case_compile(&m, posed_anyhow(&m, id, &random));
+        size_t floats = csg_kernel_scratch_floats(m.field->depth);
+        float *scratch = malloc(floats * sizeof *scratch);
+        assert_non_null(scratch);
+        for (int k = 0; k < 30; k++) {
+            double half = ldexp(1, -3 - k % 6), c[3];
+            csg_enclosure e;
+            for (int axis = 0; axis < 3; axis++)
+                c[axis] = half * round(csg_random_uniform(&random, -0.5, 0.5) / half);
+            if (!csg_enclosure_find(csg_kernel_for(CSGM_ISA_AUTO), &m.field->tape, c, half, scratch,
+                                    floats, &e) ||
+                !(e.bend > 0))
+                continue;
+            check_bend(&m, &random, c, half, &e);
+            known++;
+        }
+        free(scratch);
+        mesh_case_end(&m);
+    }
+    assert_true(known > 300 * test_times);
+}
+
 static void add_plane(csg_halves *h, csg_random *random)
 {
     csg_enclosure *e = &h->planes[h->plane_count];
@@ -368,6 +436,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(halves_hold),
         cmocka_unit_test(creases_hold),
         cmocka_unit_test(capsules_hold_on_their_axes),
+        cmocka_unit_test(formulas_bend),
         cmocka_unit_test(carved_as_cut),
         cmocka_unit_test(sections_hold),
     };

@@ -5,6 +5,7 @@
  */
 #include <math.h>
 
+#include "field/gradients/bend_formula.h"
 #include "field/gradients/cone_curve.h"
 #include "field/gradients/cone_formula.h"
 #include "field/gradients/cone_leaf.h"
@@ -96,6 +97,14 @@ static void place_box(const csg_cone_leaf *l, const csg_tape_formula *formula, c
     }
 }
 
+static void middle_of_box(const csg_cone_box *box, double middle[3], double half[3])
+{
+    for (int k = 0; k < 3; k++) {
+        middle[k] = ((double)box->high[k] + (double)box->low[k]) / 2;
+        half[k] = ((double)box->high[k] - (double)box->low[k]) / 2;
+    }
+}
+
 /* The gradients' box: its corners, or a ball around it. */
 static bool add_formula(csg_cone_leaf *l, const csg_tape *tape)
 {
@@ -106,10 +115,7 @@ static bool add_formula(csg_cone_leaf *l, const csg_tape *tape)
     if (!csg_cone_formula(tape, formula, &at, seeds, &gradient, &l->balls->has_edges))
         return false;
     double middle[3], half[3];
-    for (int k = 0; k < 3; k++) {
-        middle[k] = ((double)gradient.high[k] + (double)gradient.low[k]) / 2;
-        half[k] = ((double)gradient.high[k] - (double)gradient.low[k]) / 2;
-    }
+    middle_of_box(&gradient, middle, half);
     if (l->balls->count + CORNERS > CSG_CONE_MOST)
         return csg_cone_add(l, middle[0], middle[1], middle[2], sqrt(square_of(half)));
     for (int i = 0; i < CORNERS; i++)
@@ -143,8 +149,8 @@ static void place_affine(csg_cone_leaf *l, const float *frame, const double c[3]
     l->norm = fabs(sigma) * norm;
 }
 
-static bool add_placed(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_node *leaf,
-                       const double c[3])
+static void place(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_node *leaf,
+                  const double c[3])
 {
     const float *parameters = tape->parameters + leaf->parameters;
     const float *frame = parameters + CSG_LEAF_FRAME;
@@ -160,6 +166,12 @@ static bool add_placed(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_no
         l->own = parameters + CSG_LEAF_OWN_AFFINE;
         place_affine(l, frame, c, sigma);
     }
+}
+
+static bool add_placed(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_node *leaf,
+                       const double c[3])
+{
+    place(l, tape, leaf, c);
     if (leaf->op == CSG_OP_SHAPE)
         return add_shape(l, tape);
     if (leaf->op == CSG_OP_FIELD)
@@ -188,6 +200,42 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
     if (has_faces(leaf->op) && balls->count - first > 1)
         balls->corner = l.norm; /* in its own frame they are unit vectors */
     return !leaf->warp || csg_cone_unwarp(&way, balls, first);
+}
+
+/* Is the formula a function of the coordinates all over, and not of some that are held? */
+static bool is_within_domain(const csg_cone_box seeds[3])
+{
+    return seeds[0].low[0] > 0 && seeds[1].low[1] > 0 && seeds[2].low[2] > 0;
+}
+
+bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                        double radius, csg_cone_ball *g, double *bend)
+{
+    double at[3] = {(double)c[0], (double)c[1], (double)c[2]}, own;
+    double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    csg_cone_balls balls = {.count = 0};
+    csg_cone_leaf l = {.balls = &balls, .rho = radius + slack};
+    csg_cone_box box, seeds[3], gradient;
+    bool has_edges = false;
+    if (leaf->op != CSG_OP_FIELD || leaf->warp)
+        return false;
+    place(&l, tape, leaf, at);
+    const csg_tape_formula *formula = &tape->formulas[(uint32_t)l.own[0]];
+    double norm = l.rho / (radius + slack); /* of the frame */
+    place_box(&l, formula, &box, seeds);
+    if (!is_within_domain(seeds) || !csg_bend_formula(tape, formula, &box, &own))
+        return false;
+    l.rho = slack * norm;
+    place_box(&l, formula, &box, seeds);
+    if (!csg_cone_formula(tape, formula, &box, seeds, &gradient, &has_edges) || has_edges)
+        return false;
+    double middle[3], half[3];
+    middle_of_box(&gradient, middle, half);
+    *bend = l.norm * norm * own * (1 + 1e-6);
+    if (!csg_cone_add(&l, middle[0], middle[1], middle[2], sqrt(square_of(half))))
+        return false;
+    *g = balls.items[0];
+    return true;
 }
 
 bool csg_cone_find_faces(csg_cone_balls *balls, csg_cone_face faces[CSG_CONE_MOST],

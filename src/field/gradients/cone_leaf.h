@@ -14,6 +14,12 @@
 bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                        const float c[3], double radius);
 
+/* How a formula's gradient turns in the ball: at c it is within g->spread of g->at, which is
+ * rounding, and of any two points no two gradients differ by more than *bend times the distance
+ * between them. False: it is no formula, or nothing is known. */
+bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                        double radius, csg_cone_ball *g, double *bend);
+
 /* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
  * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is
  * not so.

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ * Forward differentiation in ranges, twice; see bend_formula.h. Of f(u, v) the second derivatives
+ * are f_u u" + f_v v" + f_uu u' u' + f_uv (u' v' + v' u') + f_vv v' v'. Operations that are no
+ * products, sums or functions of one operand are known where an operand does not change.
+ */
+#include "field/gradients/bend_formula.h"
+
+#include <math.h>
+
+#include "field/gradients/formula_slopes.h"
+
+enum { SECONDS = 6 /* xx, yy, zz, xy, xz, yz */ };
+
+static const unsigned char FIRST[SECONDS] = {0, 1, 2, 0, 0, 1},
+                           SECOND[SECONDS] = {0, 1, 2, 1, 2, 2};
+
+typedef struct jet {
+    range value, first[3], second[SECONDS];
+} jet;
+
+static bool is_constant(const jet *a)
+{
+    return is_nothing(a->first[0]) && is_nothing(a->first[1]) && is_nothing(a->first[2]);
+}
+
+/* The second derivative of what takes one operand; v its value, by the slope. */
+static range bend_of(uint8_t op, range a, range v, range by)
+{
+    switch (op) {
+    case CSG_FORMULA_NEG:
+        return NOTHING;
+    case CSG_FORMULA_ABS:
+        return by.low < by.high ? UNKNOWN : NOTHING;
+    case CSG_FORMULA_SIN:
+    case CSG_FORMULA_COS:
+        return range_neg(v, v);
+    case CSG_FORMULA_SQRT: /* by = 1 / (2 v) */
+        return range_neg(range_mul(range_square(by, by), reciprocal(v)), a);
+    case CSG_FORMULA_EXP:
+        return v;
+    case CSG_FORMULA_LN:
+        return range_neg(range_square(by, by), a);
+    default:
+        return UNKNOWN;
+    }
+}
+
+/* (a b)' and so on: p q + q p for a place of the matrix; p p where they are one. */
+static range product_at(const range *p, const range *q, int place)
+{
+    int i = FIRST[place], k = SECOND[place];
+    if (p == q)
+        return i == k ? (is_nothing(p[i]) ? NOTHING : range_square(p[i], p[i])) : times(p[i], p[k]);
+    return plus(times(p[i], q[k]), times(q[i], p[k]));
+}
+
+static jet bend_one(const jet *a, range by, range twice, range value)
+{
+    jet out = {.value = value};
+    for (int k = 0; k < 3; k++)
+        out.first[k] = times(by, a->first[k]);
+    for (int k = 0; k < SECONDS; k++)
+        out.second[k] =
+            plus(times(by, a->second[k]), times(twice, product_at(a->first, a->first, k)));
+    return out;
+}
+
+/* Sums, and products, whose mixed derivative is 1. */
+static jet bend_two(uint8_t op, const jet *a, const jet *b, range value)
+{
+    jet out = {.value = value};
+    range by_a, by_b;
+    slopes_of(op, a->value, b->value, value, &by_a, &by_b);
+    for (int k = 0; k < 3; k++)
+        out.first[k] = plus(times(by_a, a->first[k]), times(by_b, b->first[k]));
+    for (int k = 0; k < SECONDS; k++) {
+        out.second[k] = plus(times(by_a, a->second[k]), times(by_b, b->second[k]));
+        if (op == CSG_FORMULA_MUL)
+            out.second[k] = plus(out.second[k], product_at(a->first, b->first, k));
+    }
+    return out;
+}
+
+/* The operand that counts all over the box. False: either may. */
+static bool find_extreme(uint8_t op, const jet *a, const jet *b, jet *out)
+{
+    bool is_a = op == CSG_FORMULA_MIN ? a->value.high < b->value.low : a->value.low > b->value.high;
+    bool is_b = op == CSG_FORMULA_MIN ? b->value.high < a->value.low : b->value.low > a->value.high;
+    *out = is_a ? *a : *b;
+    return is_a || is_b;
+}
+
+/* False: nothing is known. */
+static bool run_step(const csg_tape_step *step, const jet *a, const jet *b, jet *out)
+{
+    range by_a, by_b,
+        value = a == b && step->op == CSG_FORMULA_MUL ? range_square(a->value, a->value)
+                                                      : value_of(step->op, a->value, b->value);
+    if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX)
+        return find_extreme(step->op, a, b, out);
+    if (csg_formula_op_is_unary(step->op) && is_constant(a)) {
+        *out = (jet){.value = value};
+    } else if (csg_formula_op_is_unary(step->op)) {
+        by_a = slope_of(step->op, a->value, value);
+        *out = bend_one(a, by_a, bend_of(step->op, a->value, value, by_a), value);
+    } else if (is_constant(a) && is_constant(b)) {
+        *out = (jet){.value = value};
+    } else if (a == b && step->op == CSG_FORMULA_MUL) {
+        *out = bend_one(a, scaled(a->value, 2), (range){2, 2}, value);
+    } else if (step->op == CSG_FORMULA_ADD || step->op == CSG_FORMULA_SUB ||
+               step->op == CSG_FORMULA_MUL) {
+        *out = bend_two(step->op, a, b, value);
+    } else if (step->op == CSG_FORMULA_DIV && is_constant(b)) {
+        slopes_of(step->op, a->value, b->value, value, &by_a, &by_b);
+        *out = bend_one(a, by_a, NOTHING, value);
+    } else {
+        return false;
+    }
+    return is_known(value);
+}
+
+/* Of a symmetric matrix whose places are in these ranges: its rows' largest sum, or the root of the
+ * sum of squares. */
+static double norm_of_matrix(const range second[SECONDS])
+{
+    double size[SECONDS], squares = 0;
+    for (int k = 0; k < SECONDS; k++) {
+        size[k] = fmax(fabs((double)second[k].low), fabs((double)second[k].high));
+        squares += (k < 3 ? 1 : 2) * size[k] * size[k];
+    }
+    double rows = fmax(size[0] + size[3] + size[4],
+                       fmax(size[1] + size[3] + size[5], size[2] + size[4] + size[5]));
+    return fmin(rows, sqrt(squares)) * (1 + 1e-12);
+}
+
+bool csg_bend_formula(const csg_tape *tape, const csg_tape_formula *formula, const csg_cone_box *at,
+                      double *bend)
+{
+    jet slots[CSG_FORMULA_SLOTS], constant = {.value = NOTHING};
+    for (int i = 0; i < 3; i++) {
+        slots[i] = (jet){.value = {at->low[i], at->high[i]}};
+        slots[i].first[i] = ONE;
+    }
+    for (uint32_t s = 0; s < formula->count; s++) {
+        const csg_tape_step *step = &tape->steps[formula->first + s];
+        const jet *a = &slots[step->a], *b = &slots[step->b];
+        constant.value = (range){step->value, step->value};
+        if (step->constant == CSG_CONSTANT_A)
+            a = &constant;
+        else if (step->constant == CSG_CONSTANT_B)
+            b = &constant;
+        if (!run_step(step, a, b, &slots[step->out]))
+            return false;
+    }
+    const jet *result = &slots[formula->result];
+    for (int k = 0; k < SECONDS; k++)
+        if (!is_known(result->second[k]))
+            return false;
+    *bend = norm_of_matrix(result->second);
+    return *bend < 1e9;
+}
