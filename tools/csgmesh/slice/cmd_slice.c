@@ -41,13 +41,14 @@ static csgm_slice_options slice_options(cli_app *app)
     return options;
 }
 
-/* The names of all formats: " .svg" and so on. */
+/* The names of the formats that this build has: " .svg" and so on. */
 static void list_formats(char *text, size_t size)
 {
     size_t length = 0;
     for (int i = CSGM_LAYERS_NONE + 1; i < CSGM_LAYERS_COUNT && length < size; i++)
-        length += (size_t)snprintf(text + length, size - length, " .%s",
-                                   csgm_layers_format_name((csgm_layers_format)i));
+        if (csgm_layers_format_available((csgm_layers_format)i))
+            length += (size_t)snprintf(text + length, size - length, " .%s",
+                                       csgm_layers_format_name((csgm_layers_format)i));
 }
 
 static int find_format(cli_app *app, const char *path, csgm_layers_format *out)
