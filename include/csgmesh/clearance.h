@@ -92,6 +92,16 @@ CSGM_API bool csgm_clearances_part(const csgm_clearances *clearances, size_t ind
 /* T as it came out. */
 CSGM_API double csgm_clearances_tolerance(const csgm_clearances *clearances);
 
+/* The pair at its worst as a scene to be drawn (csgm_render_scene): `scene` is that of the pair's
+ * pose. The part names[solid], 0 or 1, is solid and blue, and red where the other one has it in
+ * common; the other one is marked as a # would (CSGM_MARK_HIGHLIGHT) and seen through, all other
+ * parts as a % would. Where nearest points are known, balls of radius `mark` around them and a rod
+ * from one to the other are red; scene units, 0: none. The new scene does not need the old one.
+ * CSGM_ERR_ARGUMENT (not reported): the scene lacks a part of the pair. */
+CSGM_API csgm_status csgm_clear_exhibit(csgm_context *context, const csgm_scene *scene,
+                                        const csgm_clear_pair *pair, int solid, double mark,
+                                        csgm_scene **out);
+
 #ifdef __cplusplus
 }
 #endif

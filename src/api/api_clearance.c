@@ -5,6 +5,7 @@
 
 #include "api/options.h"
 #include "clearance/clearance.h"
+#include "clearance/exhibit.h"
 #include "scene/scene.h"
 
 csgm_clear_options csgm_clear_options_default(void)
@@ -58,4 +59,17 @@ bool csgm_clearances_part(const csgm_clearances *clearances, size_t index, const
 double csgm_clearances_tolerance(const csgm_clearances *clearances)
 {
     return csg_clearances_tolerance(clearances);
+}
+
+csgm_status csgm_clear_exhibit(csgm_context *context, const csgm_scene *scene,
+                               const csgm_clear_pair *pair, int solid, double mark,
+                               csgm_scene **out)
+{
+    if (!out)
+        return CSGM_ERR_ARGUMENT;
+    *out = NULL;
+    if (!context || !scene || scene->context != context || !pair || (solid != 0 && solid != 1) ||
+        !(mark >= 0 && isfinite(mark)))
+        return CSGM_ERR_ARGUMENT;
+    return csg_clear_exhibit(scene, pair, solid, mark, out);
 }

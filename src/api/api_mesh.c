@@ -199,22 +199,15 @@ static double max_abs_field(const csgm_scene *scene, const csgm_mesh_view *mesh,
     return largest;
 }
 
-static bool same_name(const char *a, const char *b)
-{
-    return a && b ? strcmp(a, b) == 0 : a == b;
-}
-
 /* Each part of the mesh against the part of the scene with its name: where parts touch, the scene's
  * own field knows no surface. NaN when there is none of that name or memory runs out. */
 static double max_abs_of_part(const csg_parts *parts, const csgm_mesh_view *mesh, uint64_t index,
                               uint64_t step, uint64_t *count)
 {
     csg_part_stretch part = csg_part_get(mesh, index);
-    size_t i = 0;
+    size_t i;
     csgm_scene *scene;
-    while (i < parts->count && !same_name(csg_parts_name(parts, i), part.name))
-        i++;
-    if (i == parts->count || csg_parts_scene(parts, i, &scene) != CSGM_OK)
+    if (!csg_parts_index(parts, part.name, &i) || csg_parts_scene(parts, i, &scene) != CSGM_OK)
         return NAN;
     double value = max_abs_field(scene, mesh, part.first_vertex,
                                  part.first_vertex + part.vertex_count, step, count);

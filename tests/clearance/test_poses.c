@@ -201,6 +201,83 @@ static void test_limits(void **state)
     csgm_context_destroy(context);
 }
 
+/* Of two boxes and a ball: what is solid, what is marked, where the red balls are. */
+static void test_exhibit(void **state)
+{
+    static const char text[] =
+        "part(\"a\") cube(2, center = true);\n"
+        "part(\"b\") rotate(30) translate([3.2, 0, 0]) cube(2, center = true);\n"
+        "translate([0, 0, 30]) sphere(1);\n";
+    const csgm_vec3 in_a = {-0.9, 0, 0}, in_b = {2.771281292110204, 1.6, 0}, in_c = {0, 0, 30};
+    csgm_context *context = open_context(1);
+    csgm_clearances *c = NULL;
+    csgm_scene *scene = NULL, *shown = NULL;
+    assert_int_equal(csgm_clearances_create(context, NULL, &c), CSGM_OK);
+    assert_int_equal(csgm_scene_parse(context, text, strlen(text), "test", NULL, &scene), CSGM_OK);
+    assert_int_equal(csgm_clearances_add(c, scene), CSGM_OK);
+    csgm_clear_pair pair = *csgm_clearances_get(c, 2);
+    assert_string_equal(pair.names[1], "b");
+    for (int solid = 0; solid < 2; solid++) {
+        assert_int_equal(csgm_clear_exhibit(context, scene, &pair, solid, 0.1, &shown), CSGM_OK);
+        const csgm_scene *other = csgm_scene_get_marked(shown, CSGM_MARK_HIGHLIGHT),
+                         *rest = csgm_scene_get_marked(shown, CSGM_MARK_BACKGROUND);
+        assert_true((csgm_scene_eval(shown, in_a, NULL) > 0) == (solid == 0));
+        assert_true((csgm_scene_eval(shown, in_b, NULL) > 0) == (solid == 1));
+        assert_true(csgm_scene_eval(other, solid ? in_a : in_b, NULL) > 0);
+        assert_true(csgm_scene_eval(other, solid ? in_b : in_a, NULL) < 0);
+        assert_true(csgm_scene_eval(rest, in_c, NULL) > 0.99);
+        assert_true(csgm_scene_eval(shown, in_c, NULL) < 0);
+        csgm_vec3 middle = {(pair.nearest[0].x + pair.nearest[1].x) / 2,
+                            (pair.nearest[0].y + pair.nearest[1].y) / 2,
+                            (pair.nearest[0].z + pair.nearest[1].z) / 2};
+        for (int k = 0; k < 2; k++)
+            assert_true(csgm_scene_eval(shown, pair.nearest[k], NULL) > 0.099);
+        assert_float_equal(csgm_scene_eval(shown, middle, NULL), 0.04, 1e-9); /* the rod */
+        csgm_scene_destroy(shown);
+    }
+    pair.state = CSGM_CLEAR_INTERFERING; /* then nearest points are not known */
+    assert_int_equal(csgm_clear_exhibit(context, scene, &pair, 0, 0.1, &shown), CSGM_OK);
+    assert_true(csgm_scene_eval(shown, pair.nearest[1], NULL) < 0);
+    csgm_scene_destroy(shown);
+    pair.names[1] = "x";
+    assert_int_equal(csgm_clear_exhibit(context, scene, &pair, 0, 0, &shown), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_clear_exhibit(context, scene, &pair, 2, 0, &shown), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_clear_exhibit(context, scene, &pair, 0, -1, &shown), CSGM_ERR_ARGUMENT);
+    assert_null(shown);
+    csgm_scene_destroy(scene);
+    csgm_clearances_destroy(c);
+    csgm_context_destroy(context);
+}
+
+static void test_any_allocation_of_an_exhibit_may_fail(void **state)
+{
+    static const char text[] = "part(\"a\") cube(2);\npart(\"b\") cube(1);\nsphere(9);\n";
+    csgm_clear_pair pair = {.names = {"a", "b"}, .state = CSGM_CLEAR_INTERFERING};
+    csgm_status status = CSGM_ERR_MEMORY;
+    int refused = 0;
+    for (long n = 0; status == CSGM_ERR_MEMORY; n++) {
+        failing f = {.left = 1000000};
+        csgm_context *context = NULL;
+        csgm_scene *scene = NULL, *shown = NULL;
+        csgm_context_options options = csgm_context_options_default();
+        options.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
+        options.threads = 1;
+        assert_int_equal(csgm_context_create(&options, &context), CSGM_OK);
+        assert_int_equal(csgm_scene_parse(context, text, strlen(text), "test", NULL, &scene),
+                         CSGM_OK);
+        f.left = n;
+        status = csgm_clear_exhibit(context, scene, &pair, 0, 0, &shown);
+        assert_true((status == CSGM_OK) == (shown != NULL));
+        refused += status == CSGM_ERR_MEMORY;
+        csgm_scene_destroy(shown);
+        csgm_scene_destroy(scene);
+        csgm_context_destroy(context);
+        assert_int_equal(f.live, 0);
+    }
+    assert_int_equal(status, CSGM_OK);
+    assert_true(refused > 10);
+}
+
 static void test_wrong_arguments(void **state)
 {
     csgm_context *context = open_context(1), *other = open_context(1);
@@ -233,6 +310,8 @@ int main(void)
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_any_allocation_may_fail),
         cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_exhibit),
+        cmocka_unit_test(test_any_allocation_of_an_exhibit_may_fail),
         cmocka_unit_test(test_wrong_arguments),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,6 +10,7 @@ import unittest
 import xml.etree.ElementTree
 
 import cli
+from test_render import read_ppm
 
 TWO = """t = 0;
 part("a") cube(10);
@@ -111,6 +112,54 @@ class Clear(unittest.TestCase):
         self.assertIsNone(cases['"a" and "on top"'].find("failure"))
         self.run_on(TWO, "--min-gap", 2, "--junit", report, status=2)
         self.assertEqual(xml.etree.ElementTree.parse(report).getroot().get("errors"), "1")
+
+    def picture(self, scene, *options, status=0):
+        """(width, height, at): of the pair that is drawn; at(x, y) is a pixel."""
+        path = os.path.join(self.folder, "worst.ppm")
+        self.run_on(scene, "--picture", path, *options, status=status)
+        with open(path, "rb") as file:
+            width, height, pixels = read_ppm(file.read())
+        return width, height, lambda x, y: tuple(pixels[3 * (y * width + x):3 * (y * width + x) + 3])
+
+    def reds(self, picture, first, last):
+        """Pixels that are red in columns first .. last - 1, without the band at the top."""
+        _, height, at = picture
+        pixels = [at(x, y) for y in range(40, height - 70) for x in range(first, last)]
+        return sum(2 * g < r and 2 * b < r for r, g, b in pixels)
+
+    def test_picture(self):
+        clear = self.picture(FOUR)  # "a" and "on top" touch: of all pairs the nearest
+        self.assertEqual(clear[:2], (1280, 670))
+        self.assertEqual(clear[2](2, 2), (26, 116, 62))
+        self.assertGreater(self.reds(clear, 641, 1280), 100)  # the balls
+        bad = self.picture(FOUR, "--over", "t=0:1:4", status=1)
+        self.assertEqual(bad[2](2, 2), (176, 28, 36))
+        whole, near = self.reds(bad, 0, 640), self.reds(bad, 641, 1280)
+        self.assertTrue(near > 5000 and near > 5 * whole > 0, (whole, near))
+        ring = [(x, y) for x in range(640) for y in range(40, 600) if bad[2](x, y) == (0, 0, 0)]
+        red = [(x, y) for x in range(640) for y in range(40, 600) if bad[2](x, y)[0] > 2 * max(bad[2](x, y)[1:])]
+        for axis in (0, 1):  # the ring's middle is on what is red
+            middle, reached = sum(p[axis] for p in ring) / len(ring), [p[axis] for p in red]
+            self.assertTrue(min(reached) < middle < max(reached), (middle, min(reached), max(reached)))
+        far = self.picture('part("a") sphere(1); part("b") translate([9, 0, 0]) sphere(1);')
+        self.assertEqual(far[0], 640)  # by their boxes: no place is known
+        top, front = (self.picture(TWO, "--view", view)[2] for view in ("top", "0,0"))
+        self.assertNotEqual([top(x, 320) for x in range(640)], [front(x, 320) for x in range(640)])
+
+    def test_picture_that_is_refused(self):
+        path = os.path.join(self.folder, "worst.ppm")
+        for scene, options, words in (
+                (TWO, ("--picture", "worst.jpg"), ("worst.jpg", ".png or .ppm")),
+                (TWO, ("--view", "top"), ("--view needs --picture",)),
+                (TWO, ("--view", "upon", "--picture", path), ("upon",)),
+                ('part("a") sphere(1); part("b") intersection() { sphere(1); translate([9, 0, 0]) sphere(1); }',
+                 ("--picture", path), ("is not drawn", "empty")),
+                (TWO, ("--picture", os.path.join(self.folder, "none", "worst.ppm")), ("worst.ppm",))):
+            with self.subTest(options):
+                result = self.run_on(scene, *options, status=2)
+                for word in words:
+                    self.assertIn(word, result.stderr)
+        self.assertFalse(os.path.exists(path))
 
     def test_what_is_refused(self):
         for scene, options, words in (

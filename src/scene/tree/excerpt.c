@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "scene/operators/rule.h"
-#include "scene/tree/build.h"
 #include "scene/tree/build_private.h"
 
 /* array: where the pointer stands. */
@@ -35,8 +34,7 @@ static bool load_shapes(csg_scene_builder *b, const csgm_scene *from)
     return true;
 }
 
-/* All nodes of a sealed scene into an empty builder, with the same numbers. */
-static bool load(csg_scene_builder *b, const csgm_scene *from)
+bool csg_excerpt_load(csg_scene_builder *b, const csgm_scene *from)
 {
     csg_memory *memory = &b->context->memory;
     csgm_scene *to = b->scene;
@@ -53,7 +51,7 @@ static bool load(csg_scene_builder *b, const csgm_scene *from)
 #undef LOAD
 }
 
-static csg_node_id place_item(csg_scene_builder *b, const csg_excerpt_item *item)
+csg_node_id csg_excerpt_place(csg_scene_builder *b, const csg_excerpt_item *item)
 {
     csg_look look = item->look;
     csg_span where = b->scene->nodes[item->node].where;
@@ -68,7 +66,7 @@ static csg_node_id build(csg_scene_builder *b, const csg_excerpt *excerpt, csg_s
                          csg_node_id *nodes)
 {
     for (size_t i = 0; i < excerpt->count; i++) {
-        nodes[i] = place_item(b, &excerpt->items[i]);
+        nodes[i] = csg_excerpt_place(b, &excerpt->items[i]);
         if (nodes[i] == CSG_NODE_NONE)
             return CSG_NODE_NONE;
     }
@@ -90,7 +88,7 @@ csgm_status csg_scene_excerpt(const csgm_scene *scene, const csg_excerpt *excerp
     csg_node_id *nodes = csg_memory_alloc(&context->memory, bytes);
     csgm_status status = nodes ? csg_build_begin(&b, context) : CSGM_ERR_MEMORY;
     if (status == CSGM_OK) {
-        if (!load(&b, scene))
+        if (!csg_excerpt_load(&b, scene))
             csg_build_no_memory(&b);
         else
             csg_build_finish(&b, build(&b, excerpt, scene->nodes[scene->root].where, nodes), NULL,

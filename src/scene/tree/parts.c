@@ -168,6 +168,17 @@ const char *csg_parts_name(const csg_parts *parts, size_t index)
     return number ? parts->scene->part_names[number - 1] : NULL;
 }
 
+bool csg_parts_index(const csg_parts *parts, const char *name, size_t *index)
+{
+    for (size_t i = 0; i < parts->count; i++) {
+        const char *own = csg_parts_name(parts, i);
+        *index = i;
+        if (own && name ? strcmp(own, name) == 0 : own == name)
+            return true;
+    }
+    return false;
+}
+
 csg_box csg_parts_box(const csg_parts *parts, size_t index)
 {
     csg_box box = csg_box_empty();

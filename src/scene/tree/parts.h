@@ -39,6 +39,8 @@ void csg_parts_reset(csg_parts *parts);
 
 /* NULL for the part without a name. index < count. */
 const char *csg_parts_name(const csg_parts *parts, size_t index);
+/* The part of that name, NULL being that of the part without one. False: there is none. */
+bool csg_parts_index(const csg_parts *parts, const char *name, size_t *index);
 /* A box that contains the part. */
 csg_box csg_parts_box(const csg_parts *parts, size_t index);
 /* The part as a scene of its own; reports nothing. */

@@ -23,6 +23,9 @@ cli_verdict cli_verdict_of(const csgm_clear_pair *pair);
 const char *cli_clear_state_name(csgm_clear_state state);
 /* "lid" in quotes, or what the part without a name is called. */
 const char *cli_clear_name(const char *name, char text[96]);
+/* " at t = 0.3" of the worst pose, or nothing where there is one pose. */
+void cli_clear_pose(const cli_cleared *cleared, const csgm_clear_pair *pair, char *text,
+                    size_t size);
 /* One sentence: what is wrong with the pair, and at which pose. */
 void cli_clear_say(const cli_cleared *cleared, const csgm_clear_pair *pair, char *text,
                    size_t size);

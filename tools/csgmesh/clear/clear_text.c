@@ -28,7 +28,7 @@ const char *cli_clear_name(const char *name, char text[96])
     return text;
 }
 
-static void put_pose(const cli_cleared *c, const csgm_clear_pair *pair, char *text, size_t size)
+void cli_clear_pose(const cli_cleared *c, const csgm_clear_pair *pair, char *text, size_t size)
 {
     char value[CLI_OVER_TEXT];
     text[0] = 0;
@@ -41,7 +41,7 @@ void cli_clear_say(const cli_cleared *c, const csgm_clear_pair *pair, char *text
 {
     char a[96], b[96], pose[160], gap[CLI_INTERVAL_TEXT];
     cli_clear_name(pair->names[0], a);
-    put_pose(c, pair, pose, sizeof pose);
+    cli_clear_pose(c, pair, pose, sizeof pose);
     const char *first = cli_clear_name(pair->names[0], a),
                *second = cli_clear_name(pair->names[1], b);
     if (pair->state == CSGM_CLEAR_INTERFERING)
@@ -90,7 +90,7 @@ static void print_pair(const cli_cleared *c, const csgm_clear_pair *p)
 {
     char a[96], b[96], pose[160];
     const char *first = cli_clear_name(p->names[0], a), *second = cli_clear_name(p->names[1], b);
-    put_pose(c, p, pose, sizeof pose);
+    cli_clear_pose(c, p, pose, sizeof pose);
     printf("  %s and %s: %s", first, second, cli_clear_state_name(p->state));
     if (p->state == CSGM_CLEAR_TOUCHING)
         printf(" within %.3g", csgm_clearances_tolerance(c->pairs));

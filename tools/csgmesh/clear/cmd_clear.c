@@ -6,12 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clear/clear_picture.h"
 #include "clear/clear_print.h"
 #include "core/interrupt.h"
 #include "core/mesh_files.h"
 #include "core/options.h"
 #include "core/part_names.h"
 #include "core/sources.h"
+#include "render/picture_options.h"
 
 enum { SAID_MOST = 20 /* pairs that are told one by one as errors */ };
 
@@ -185,6 +187,37 @@ static int print(cli_app *app, const cli_cleared *cleared, csgm_status status)
     return result;
 }
 
+/* The picture of the worst pair, whose pose's scene is made again. */
+static int draw(cli_app *app, const cli_cleared *cleared, csgm_status status)
+{
+    const char *path = app->options->clear_picture;
+    const csgm_clear_pair *worst = cli_clear_worst(cleared);
+    csgm_scene *scene = NULL;
+    if (!path || status != CSGM_OK)
+        return CLI_DONE;
+    if (!worst) {
+        cli_console_say(&app->console, CSGM_ERROR, NULL,
+                        "%s is not drawn: of each pair of parts one is empty", path);
+        return CLI_TROUBLE;
+    }
+    int result = CLI_TROUBLE;
+    if (load_pose(app, cleared->over, worst->pose, &scene) == CSGM_OK)
+        result = cli_clear_picture(app, cleared, worst, scene, path);
+    csgm_scene_destroy(scene);
+    return result;
+}
+
+static int check_picture(cli_app *app)
+{
+    csgm_camera camera = {.azimuth_deg = 0};
+    const cli_options *o = app->options;
+    if (o->view && !o->clear_picture)
+        return cli_usage_error(app, NULL, "--view needs --picture");
+    if (cli_picture_view(app, &camera) != CLI_DONE)
+        return CLI_TROUBLE;
+    return o->clear_picture ? cli_picture_check(app, o->clear_picture) : CLI_DONE;
+}
+
 static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
 {
     const cli_options *o = app->options;
@@ -202,6 +235,8 @@ static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
         status = look_at_poses(app, over, pairs, wanted, &cleared.poses);
     cleared.pairs = pairs;
     int result = pairs ? print(app, &cleared, status) : CLI_TROUBLE;
+    if (pairs && draw(app, &cleared, status) != CLI_DONE)
+        result = CLI_TROUBLE;
     csgm_clearances_destroy(pairs);
     return result;
 }
@@ -219,6 +254,8 @@ int cli_cmd_clear(cli_app *app)
         return cli_usage_error(app, NULL,
                                "--over reads the scene many times, and standard input comes once");
     int status = cli_over_read(app, app->options->clear_over, &over);
+    if (status == CLI_DONE)
+        status = check_picture(app);
     if (status == CLI_DONE)
         status = read_parts(app, &wanted);
     if (status == CLI_DONE)

@@ -67,6 +67,7 @@ static const char *output_at(const cli_options *o, size_t index, const char **op
                   {"--json", o->json ? "-" : NULL},
                   {"--junit", o->measure_junit},
                   {"--junit", o->clear_junit},
+                  {"--picture", o->clear_picture},
                   {"-o", o->merged}};
     enum { OTHERS = sizeof others / sizeof *others };
     bool is_other = index >= o->outputs.count;

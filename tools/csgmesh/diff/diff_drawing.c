@@ -9,7 +9,7 @@
 
 #include "core/options.h"
 #include "diff/diff_view.h"
-#include "render/picture_options.h"
+#include "render/picture_frame.h"
 
 csgm_vec3 diff_drawing_vertex(const csgm_mesh_view *view, uint32_t vertex)
 {
@@ -94,22 +94,6 @@ static csgm_status refine(diff_drawing *d)
 
 /* ---- from where ------------------------------------------------------------------------------ */
 
-/* What --view says. Rounded, so that the last bits of a libm are not seen, and never quite along z,
- * so that there is an up. */
-static bool chosen_view(cli_app *app, csgm_vec3 *out)
-{
-    const double degree = 0.017453292519943295, grid = 1e9, least = 1e-6;
-    csgm_camera camera = {.azimuth_deg = 0};
-    if (!app->options->view || cli_picture_view(app, &camera) != CLI_DONE)
-        return false;
-    double azimuth = camera.azimuth_deg * degree, elevation = camera.elevation_deg * degree;
-    double level = fmax(round(cos(elevation) * grid) / grid, least);
-    *out = (csgm_vec3){level * round(sin(azimuth) * grid) / grid,
-                       -level * round(cos(azimuth) * grid) / grid,
-                       round(sin(elevation) * grid) / grid};
-    return true;
-}
-
 /* ---- all of it ------------------------------------------------------------------------------- */
 
 static bool no_memory(cli_app *app)
@@ -138,7 +122,7 @@ bool diff_drawing_make(cli_app *app, const csgm_diff *diff, const diff_side side
     if (isfinite(report->hausdorff_lower) && report->hausdorff_lower > report->precision)
         out->most = report->hausdorff_lower;
     csgm_status status = refine(out);
-    if (status == CSGM_OK && !chosen_view(app, &out->toward))
+    if (status == CSGM_OK && !cli_frame_view(app, &out->toward))
         status = diff_view_find(out, &out->toward);
     if (status == CSGM_OK)
         return true;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "diff/diff_report.h"
-#include "render/picture_text.h"
+#include "render/picture_frame.h"
 
 enum { PANEL = 480, TALL = 400, BAND = 40, CAPTION = 30, FOOT = 44, PANELS = 3 };
 enum { WIDTH = PANELS * PANEL, HEIGHT = BAND + CAPTION + TALL + FOOT };
@@ -17,61 +17,12 @@ static const uint8_t white[3] = {255, 255, 255}, ink[3] = {40, 44, 52}, paper[3]
                      stage[3] = {216, 220, 226}, red[3] = {176, 28, 36}, green[3] = {26, 116, 62},
                      black[3] = {0, 0, 0};
 
-/* ---- the camera ------------------------------------------------------------------------------ */
-
-typedef struct frame {
-    csgm_vec3 middle, right, up, toward, eye;
-    double distance;
-} frame;
-
-static const double tangent = 0.26794919243; /* of 15 degrees, half the angle of view */
-
-static double dot(csgm_vec3 a, csgm_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/* As near as all corners of the box allow. */
-static frame make_frame(const diff_drawing *d)
-{
-    csgm_vec3 lo = d->box.min, hi = d->box.max, n = d->toward;
-    double flat = sqrt(n.x * n.x + n.y * n.y);
-    frame f = {.middle = {(lo.x + hi.x) / 2, (lo.y + hi.y) / 2, (lo.z + hi.z) / 2},
-               .right = {-n.y / flat, n.x / flat, 0},
-               .toward = n};
-    f.up = (csgm_vec3){-n.z * n.x / flat, -n.z * n.y / flat, flat};
-    for (int i = 0; i < 8; i++) {
-        csgm_vec3 corner = {(i & 1 ? hi.x : lo.x) - f.middle.x, (i & 2 ? hi.y : lo.y) - f.middle.y,
-                            (i & 4 ? hi.z : lo.z) - f.middle.z};
-        double wide = fabs(dot(corner, f.right)) * TALL / PANEL, high = fabs(dot(corner, f.up));
-        f.distance = fmax(f.distance, dot(corner, n) + fmax(wide, high) / tangent);
-    }
-    f.distance = f.distance > 0 ? 1.06 * f.distance : 1;
-    f.eye = (csgm_vec3){f.middle.x + f.distance * n.x, f.middle.y + f.distance * n.y,
-                        f.middle.z + f.distance * n.z};
-    return f;
-}
-
-static bool project(const frame *f, csgm_vec3 p, int *x, int *y)
-{
-    csgm_vec3 at = {p.x - f->middle.x, p.y - f->middle.y, p.z - f->middle.z};
-    double depth = f->distance - dot(at, f->toward);
-    double scale = TALL / 2.0 / (tangent * depth);
-    double across = PANEL / 2.0 + scale * dot(at, f->right);
-    double down = TALL / 2.0 - scale * dot(at, f->up);
-    if (!(depth > 0) || !(across >= 0 && across < PANEL && down >= 0 && down < TALL))
-        return false;
-    *x = (int)across;
-    *y = (int)down;
-    return true;
-}
-
 /* ---- panels ---------------------------------------------------------------------------------- */
 
 typedef struct painter {
     cli_app *app;
     const diff_drawing *drawing;
-    frame frame;
+    cli_frame frame;
     cli_canvas canvas;
 } painter;
 
@@ -79,26 +30,18 @@ static csgm_status draw(painter *p, int panel, const csgm_mesh_view *mesh)
 {
     csgm_render_options options = csgm_render_options_default();
     csgm_image *image = NULL;
-    const frame *f = &p->frame;
     cli_canvas_fill(&p->canvas, panel * PANEL, BAND + CAPTION, PANEL, TALL, stage);
     if (mesh->triangle_count == 0)
         return CSGM_OK;
     options.ground = false; /* it would move with what was removed or added below */
     options.edges = options.flat = true;
-    options.width = PANEL;
-    options.height = TALL;
-    options.camera.placed = true;
-    options.camera.target = f->middle;
-    options.camera.eye = f->eye;
+    cli_frame_aim(&p->frame, &options);
     memcpy(options.background, stage, 3);
     csgm_status status = csgm_render_mesh(p->app->context, mesh, &options, &image, NULL);
     if (status != CSGM_OK)
         return status;
     csgm_image_view view = csgm_image_get_view(image);
-    for (uint32_t y = 0; y < TALL; y++)
-        memcpy(p->canvas.pixels +
-                   4 * ((size_t)(BAND + CAPTION + y) * WIDTH + (size_t)panel * PANEL),
-               view.pixels + 4 * (size_t)y * PANEL, 4 * PANEL);
+    cli_canvas_image(&p->canvas, panel * PANEL, BAND + CAPTION, &view);
     csgm_image_destroy(image);
     return CSGM_OK;
 }
@@ -232,7 +175,7 @@ static void write_words(painter *p, const diff_result *result)
     write_side(p, r, 1);
     if (p->drawing->most > 0)
         write_scale(p, 2 * PANEL + 14, HEIGHT - FOOT + 15);
-    if (worst && project(&p->frame, worst->at, &x, &y))
+    if (worst && cli_frame_project(&p->frame, worst->at, &x, &y))
         for (int i = 0; i < PANELS; i++) {
             cli_canvas_ring(&p->canvas, i * PANEL + x, BAND + CAPTION + y, 15, 4, white);
             cli_canvas_ring(&p->canvas, i * PANEL + x, BAND + CAPTION + y, 14, 2, black);
@@ -254,29 +197,18 @@ static csgm_status paint(painter *p, const diff_result *result)
     return status;
 }
 
-static csgm_status save(painter *p, const char *path)
-{
-    csgm_image_view view = {WIDTH, HEIGHT, p->canvas.pixels};
-    csgm_image *image = NULL;
-    csgm_status status = csgm_image_create(p->app->context, &view, &image);
-    if (status == CSGM_OK)
-        status = csgm_image_write(p->app->context, image, path, CSGM_IMAGE_AUTO);
-    csgm_image_destroy(image);
-    return status;
-}
-
 int diff_write_picture(cli_app *app, const diff_drawing *drawing, const diff_result *result,
                        const char *path)
 {
     painter p = {.app = app,
                  .drawing = drawing,
-                 .frame = make_frame(drawing),
+                 .frame = cli_frame_make(drawing->box, drawing->toward, PANEL, TALL),
                  .canvas = {WIDTH, HEIGHT, malloc((size_t)WIDTH * HEIGHT * 4)}};
     csgm_status status = p.canvas.pixels ? paint(&p, result) : CSGM_ERR_MEMORY;
     if (status == CSGM_ERR_MEMORY)
         cli_console_say(&app->console, CSGM_ERROR, NULL, "out of memory");
     if (status == CSGM_OK)
-        status = save(&p, path);
+        status = cli_canvas_write(app, &p.canvas, path);
     free(p.canvas.pixels);
     return status == CSGM_OK ? CLI_DONE : CLI_TROUBLE;
 }

@@ -19,16 +19,10 @@ static bool is_alone(const cli_app *app, const diff_result *result)
 static int check_png(cli_app *app)
 {
     const char *path = app->options->diff_png;
-    csgm_image_format format = csgm_image_format_from_path(path);
     if (diff_is_folder(app->options->operands.items[0]))
         return cli_usage_error(app, "--html shows all pairs on one page",
                                "--png wants two files, not folders");
-    if (format == CSGM_IMAGE_AUTO)
-        return cli_usage_error(app, "use .png or .ppm", "%s is no name of a picture", path);
-    if (!csgm_image_format_available(format))
-        return cli_usage_error(app, "write a .ppm",
-                               "this build cannot write PNG pictures (made without libpng)");
-    return CLI_DONE;
+    return cli_picture_check(app, path);
 }
 
 int diff_report_check(cli_app *app)

@@ -202,3 +202,14 @@ int cli_picture_options(cli_app *app, csgm_render_options *out)
         status = read_slice(app, out);
     return status == CLI_DONE ? read_evaluator(app, out) : status;
 }
+
+int cli_picture_check(cli_app *app, const char *path)
+{
+    csgm_image_format format = csgm_image_format_from_path(path);
+    if (format == CSGM_IMAGE_AUTO)
+        return cli_usage_error(app, "use .png or .ppm", "%s is no name of a picture", path);
+    if (!csgm_image_format_available(format))
+        return cli_usage_error(app, "write a .ppm",
+                               "this build cannot write PNG pictures (made without libpng)");
+    return CLI_DONE;
+}
