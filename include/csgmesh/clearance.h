@@ -61,6 +61,17 @@ typedef struct csgm_clear_pair {
     size_t poses_bad;     /* those where they interfere, or where the gap is less than min_gap */
     size_t poses_open;    /* those where that could not be told */
     uint64_t pairs;       /* of cubes, in all */
+    /* From each pose to the next, where both are there at both. Such a step is covered where it is
+     * proven that on the way the two have no point in common, and are min_gap apart, if each is the
+     * same at both poses but for a rigid motion, and the one moves in relation to the other by the
+     * screw that leads from the one pose to the next (a turn around an axis by 180 degrees at most,
+     * and a shift along it). That is how bodies on a common hinge, slide or thread move; what moves
+     * otherwise is covered as long as it strays from there by less than gap_between. Also covered
+     * are steps in which neither moves in relation to the other. */
+    size_t steps;
+    size_t steps_open;  /* those that are not covered: of them nothing is claimed */
+    size_t first_open;  /* the pose that the first of these leads to; 0: there is none */
+    double gap_between; /* nowhere on the ways that are covered, and at no pose, is the gap less */
 } csgm_clear_pair;
 
 typedef struct csgm_clearances csgm_clearances;
@@ -73,7 +84,8 @@ CSGM_API void csgm_clearances_destroy(csgm_clearances *clearances); /* NULL is a
 
 /* One more pose: the same scene with its parts in other places, of the same context; it may go
  * afterwards. Parts are known by their names; those that are what they were are not looked at
- * again. Between poses nothing is known. The same for any number of threads.
+ * again. Of what lies between poses csgm_clear_pair.steps tells. The same for any number of
+ * threads.
  *
  * CSGM_ERR_ARGUMENT (not reported): a part that was asked for is not there at the first pose.
  * CSGM_ERR_SCENE (reported): there are fewer than two parts, or one that had to be looked at

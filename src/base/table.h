@@ -15,6 +15,8 @@
 #ifndef CSG_BASE_TABLE_H
 #define CSG_BASE_TABLE_H
 
+#include <string.h>
+
 #include "base/memory.h"
 
 #define CSG_TABLE_NONE UINT32_MAX
@@ -94,6 +96,18 @@ static inline uint64_t csg_hash_word(uint64_t hash, uint64_t word)
 {
     hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
     return hash ^ hash >> 29;
+}
+
+/* More of a text into 128 bits of a digest, which begins with CSG_HASH_START and 0: two texts that
+ * come in the same pieces and have the same digest are taken for the same. */
+static inline void csg_digest_text(uint64_t digest[2], const char *bytes, size_t length)
+{
+    digest[0] = csg_hash_bytes(digest[0], bytes, length);
+    for (size_t i = 0; i < length; i += sizeof(uint64_t)) {
+        uint64_t word = 0;
+        memcpy(&word, bytes + i, length - i < sizeof word ? length - i : sizeof word);
+        digest[1] = csg_hash_word(digest[1], word);
+    }
 }
 
 #endif

@@ -12,6 +12,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 #include "clearance/search.h"
+#include "scene/tree/placement.h"
 
 /* Of a name over all poses. */
 typedef struct part {
@@ -21,17 +22,30 @@ typedef struct part {
     csg_box box;             /* at this pose */
     size_t index;            /* among the pose's parts */
     bool is_there, is_fresh; /* at this pose; .at is of this pose */
+    csg_placement placed[2]; /* at this pose: that of its parity; and at the pose before */
+    csg_affine back;         /* from this pose to the one before, where has_motion */
+    double reach;            /* of both placements and the box */
+    bool was_there, has_motion, is_still;
 } part;
 
 typedef enum outcome { CLEAR, BAD, OPEN } outcome;
 
+/* The step from the pose before to this one. ASKED: a search is to tell. */
+typedef enum step { STEP_NONE, STEP_OPEN, STEP_ASKED, STEP_COVERED } step;
+
 typedef struct pair {
     csgm_clear_pair told;
     uint32_t a, b;
-    uint64_t versions[2];  /* of the last search; 0: none yet */
-    outcome last;          /* of it */
-    size_t poses;          /* at which something is known */
-    bool is_known;         /* told is of some pose */
+    uint64_t versions[2]; /* of the last search; 0: none yet */
+    outcome last;         /* of it */
+    double last_apart;    /* then they were so far apart; 0: that was not proven */
+    step step;
+    csg_motion motion; /* where it is asked for */
+    bool moves_first;  /* of the first part; else of the second */
+    double apart;      /* > 0: known to be so far apart at this pose, and only the step is asked */
+    double between;    /* the least of what is proven of steps */
+    size_t poses;      /* at which something is known */
+    bool is_known;     /* told is of some pose */
     csgm_clear_pair found; /* of this pose's search */
     bool out_of_memory;
 } pair;
@@ -99,6 +113,8 @@ void csg_clearances_destroy(csgm_clearances *c)
     csg_memory *memory = &c->context->memory;
     for (size_t i = 0; i < c->part_count; i++) {
         csg_clear_part_release(&c->parts[i].at);
+        for (int k = 0; k < 2; k++)
+            csg_placement_release(&c->parts[i].placed[k]);
         release_text(memory, c->parts[i].name);
     }
     for (size_t i = 0; c->wanted && i < c->options.part_count; i++)
@@ -156,6 +172,7 @@ static bool add_part(csgm_clearances *c, const char *name)
             return false;
         c->pairs[c->pair_count++] = (pair){.a = i,
                                            .b = index,
+                                           .between = INFINITY,
                                            .told = {.names = {c->parts[i].name, fresh.name},
                                                     .state = CSGM_CLEAR_UNDECIDED,
                                                     .gap = {INFINITY, INFINITY}}};
@@ -177,11 +194,41 @@ static bool find_part(csgm_clearances *c, const char *name, size_t *at)
     return add_part(c, name);
 }
 
+/* From the origin. */
+static double farthest_of(csg_box box)
+{
+    csg_vec3 a = box.min, b = box.max;
+    if (csg_box_is_empty(box))
+        return 0;
+    return csg_vec3_norm(csg_vec3_make(fmax(fabs(a.x), fabs(b.x)), fmax(fabs(a.y), fabs(b.y)),
+                                       fmax(fabs(a.z), fabs(b.z))));
+}
+
+/* Where it is, and how it came there. False: out of memory. */
+static bool place_part(const csgm_clearances *c, part *p, const csg_parts *parts)
+{
+    const csg_placement *before = &p->placed[(c->poses + 1) % 2];
+    csg_placement *now = &p->placed[c->poses % 2];
+    csg_affine none = csg_affine_identity();
+    if (csg_placement_take(now, parts, p->index) != CSGM_OK)
+        return false;
+    p->has_motion = p->was_there && csg_placement_motion(now, before, &p->back);
+    p->is_still = p->has_motion && csg_placement_is_same(now, before);
+    if (p->is_still)
+        p->back = none;
+    p->reach = csg_placement_reach(now) + 4 * farthest_of(p->box); /* cubes reach beyond the box */
+    if (p->was_there)
+        p->reach += csg_placement_reach(before);
+    return true;
+}
+
 static bool take_parts(csgm_clearances *c, const csg_parts *parts)
 {
     size_t at = 0;
-    for (size_t i = 0; i < c->part_count; i++)
+    for (size_t i = 0; i < c->part_count; i++) {
+        c->parts[i].was_there = c->parts[i].is_there;
         c->parts[i].is_there = c->parts[i].is_fresh = false;
+    }
     for (size_t i = 0; i < parts->count; i++, at++) {
         if (!find_part(c, csg_parts_name(parts, i), &at))
             return false;
@@ -189,6 +236,8 @@ static bool take_parts(csgm_clearances *c, const csg_parts *parts)
         p->is_there = true;
         p->index = i;
         p->box = csg_parts_box(parts, i);
+        if (!place_part(c, p, parts))
+            return false;
     }
     return true;
 }
@@ -305,6 +354,48 @@ static bool ask_boxes(csgm_clearances *c, pair *p)
     return true;
 }
 
+/* ---- steps -------------------------------------------------------------------------------------
+ */
+
+/* The ball around the part's box. */
+static double most_of(const csg_motion *motion, const part *p)
+{
+    double radius = 0.5 * csg_vec3_norm(csg_box_size(p->box));
+    return csg_motion_most(motion, csg_box_center(p->box), radius);
+}
+
+static void cover(pair *p, double apart)
+{
+    p->step = STEP_COVERED;
+    p->between = fmin(p->between, apart);
+}
+
+/* What is known of the step by motions and boxes. Of two motions, that of the one part seen from
+ * the other and the other way round, the smaller one is taken: they are the same way. */
+static void begin_step(const csgm_clearances *c, pair *p)
+{
+    const part *a = &c->parts[p->a], *b = &c->parts[p->b];
+    double apart = box_distance(a->box, b->box), reach = a->reach + b->reach;
+    if (p->step == STEP_NONE || !a->has_motion || !b->has_motion)
+        return;
+    if ((a->is_still && b->is_still) || apart >= INFINITY) {
+        cover(p, INFINITY);
+        return;
+    }
+    if (!isfinite(reach))
+        return;
+    csg_motion of_b = csg_motion_between(&b->back, &a->back, reach),
+               of_a = csg_motion_between(&a->back, &b->back, reach);
+    double most_a = most_of(&of_a, a), most_b = most_of(&of_b, b), most = fmin(most_a, most_b);
+    p->moves_first = most_a < most_b;
+    p->motion = p->moves_first ? of_a : of_b;
+    p->step = STEP_ASKED;
+    if (most <= 2 * p->motion.slack)
+        cover(p, INFINITY);
+    else if (apart - most > 0 && apart - most >= c->options.min_gap)
+        cover(p, apart - most);
+}
+
 /* ---- what searches tell ------------------------------------------------------------------------
  */
 
@@ -348,10 +439,14 @@ static void take_found(csgm_clearances *c, pair *p)
         told->poses_bad = before.poses_bad;
         told->poses_open = before.poses_open;
         told->pairs = before.pairs;
+        told->steps = before.steps;
+        told->steps_open = before.steps_open;
+        told->first_open = before.first_open;
         p->is_known = true;
     }
     told->gap.low = low;
     p->last = outcome_of(c, found);
+    p->last_apart = found->state == CSGM_CLEAR_APART ? found->gap.low : 0;
     p->versions[0] = c->parts[p->a].version;
     p->versions[1] = c->parts[p->b].version;
     count_pose(p, p->last);
@@ -361,17 +456,26 @@ static bool search_one(void *user, uint32_t worker, size_t index)
 {
     csgm_clearances *c = user;
     pair *p = &c->pairs[c->search[index]];
-    csg_clear_task task = {.a = &c->parts[p->a].at,
-                           .b = &c->parts[p->b].at,
+    bool asks = p->step == STEP_ASKED, turned = asks && p->moves_first;
+    csg_clear_task task = {.a = &c->parts[turned ? p->b : p->a].at,
+                           .b = &c->parts[turned ? p->a : p->b].at,
                            .tolerance = c->tolerance,
                            .share = share_of(c),
                            .enough = enough_of(c, p),
                            .min_gap = c->options.min_gap,
                            .enough_volume = p->told.volume.low,
                            .most_pairs = c->options.most_pairs,
+                           .motion = asks ? &p->motion : NULL,
+                           .apart = p->apart,
                            .worker = worker,
                            .watch = &c->watch};
-    return csg_clear_search(&task, &p->found, &p->out_of_memory);
+    bool done = csg_clear_search(&task, &p->found, &p->out_of_memory);
+    if (turned) {
+        csgm_vec3 first = p->found.nearest[0];
+        p->found.nearest[0] = p->found.nearest[1];
+        p->found.nearest[1] = first;
+    }
+    return done;
 }
 
 static csgm_status refresh(csgm_clearances *c, const csg_parts *parts, uint32_t index)
@@ -392,23 +496,39 @@ static bool is_there(const csgm_clearances *c, const pair *p)
     return c->parts[p->a].is_there && c->parts[p->b].is_there;
 }
 
+static void begin_pose(const csgm_clearances *c, pair *p)
+{
+    bool is_now = is_there(c, p);
+    bool is_step = is_now && c->parts[p->a].was_there && c->parts[p->b].was_there;
+    p->told.poses += is_now;
+    p->step = is_step ? STEP_OPEN : STEP_NONE;
+}
+
+static void end_step(const csgm_clearances *c, pair *p)
+{
+    csgm_clear_pair *told = &p->told;
+    bool is_open = p->step == STEP_OPEN || p->step == STEP_ASKED;
+    told->steps += p->step != STEP_NONE;
+    told->steps_open += is_open;
+    if (is_open && !told->first_open)
+        told->first_open = c->poses;
+    p->step = STEP_NONE;
+}
+
 /* A pose that was begun and not ended: pairs that were not looked at do not have it. Where it was
  * their first, nothing is known of them. */
-static void leave_open(csgm_clearances *c)
+static void end_pose(const csgm_clearances *c, pair *p)
 {
-    for (size_t i = 0; i < c->pair_count; i++) {
-        pair *p = &c->pairs[i];
-        if (p->poses == p->told.poses)
-            continue;
-        if (p->poses) {
-            p->told.poses = p->poses;
-            continue;
-        }
-        count_pose(p, OPEN);
-        p->told.gap.low = 0;
-        p->told.pose = c->poses;
-        p->is_known = true;
+    if (p->poses == p->told.poses)
+        return;
+    if (p->poses) {
+        p->told.poses = p->poses;
+        return;
     }
+    count_pose(p, OPEN);
+    p->told.gap.low = 0;
+    p->told.pose = c->poses;
+    p->is_known = true;
 }
 
 /* Pairs that have to be searched, their parts compiled. */
@@ -421,16 +541,25 @@ static csgm_status plan(csgm_clearances *c, const csg_parts *parts)
         pair *p = &c->pairs[i];
         if (i % 64 == 0 && csg_mesh_should_stop(&c->watch))
             return csg_mesh_why_stopped(&c->watch);
-        if (!is_there(c, p) || ask_boxes(c, p))
+        p->apart = 0;
+        if (!is_there(c, p))
+            continue;
+        begin_step(c, p);
+        bool is_told = ask_boxes(c, p);
+        if (is_told && p->step != STEP_ASKED)
             continue;
         status = refresh(c, parts, p->a);
         if (status == CSGM_OK)
             status = refresh(c, parts, p->b);
         bool is_old =
             p->versions[0] == c->parts[p->a].version && p->versions[1] == c->parts[p->b].version;
-        if (status == CSGM_OK && is_old) {
+        if (is_told)
+            p->apart = box_distance(c->parts[p->a].box, c->parts[p->b].box);
+        if (status == CSGM_OK && is_old && !is_told) {
             count_pose(p, p->last);
-            continue;
+            p->apart = p->last_apart;
+            if (p->step != STEP_ASKED || !(p->apart > 0))
+                continue;
         }
         if (status == CSGM_OK && !csg_memory_reserve(memory, (void **)&c->search, &c->search_room,
                                                      c->search_count + 1, sizeof *c->search))
@@ -449,7 +578,12 @@ static csgm_status search_all(csgm_clearances *c)
     bool done = csg_pool_run(c->context->pool, c->search_count, search_one, NULL, c);
     for (size_t i = 0; i < c->search_count; i++) {
         pair *p = &c->pairs[c->search[i]];
-        if (done || !p->poses || outcome_of(c, &p->found) != OPEN)
+        if (p->step == STEP_ASKED && p->found.gap_between > 0 &&
+            p->found.gap_between >= c->options.min_gap)
+            cover(p, p->found.gap_between);
+        if (p->apart > 0)
+            p->told.pairs += p->found.pairs;
+        else if (done || !p->poses || outcome_of(c, &p->found) != OPEN)
             take_found(c, p);
         out_of_memory |= p->out_of_memory;
     }
@@ -472,14 +606,19 @@ csgm_status csg_clearances_add(csgm_clearances *c, const csgm_scene *scene)
     if (status == CSGM_OK && parts.count < 2)
         status = refuse_few(c->context);
     for (size_t i = 0; i < c->pair_count && status == CSGM_OK; i++)
-        c->pairs[i].told.poses += is_there(c, &c->pairs[i]);
+        begin_pose(c, &c->pairs[i]);
     if (status == CSGM_OK)
         status = plan(c, &parts);
     if (status == CSGM_OK)
         status = search_all(c);
     csg_zone_count(c->context, "pairs", c->search_count);
     csg_parts_reset(&parts);
-    leave_open(c);
+    for (size_t i = 0; i < c->pair_count; i++) {
+        pair *p = &c->pairs[i];
+        end_step(c, p);
+        end_pose(c, p);
+        p->told.gap_between = fmin(p->told.gap.low, p->between);
+    }
     c->poses++;
     return status;
 }

@@ -32,7 +32,7 @@ static void consider(overlap *o, uint32_t a, uint32_t b)
     if (!(volume > 0))
         return;
     bool together;
-    if (csg_clear_between(o->a, a, o->b, b, (csg_vec3){0, 0, 0}, 0, &together) > 0)
+    if (csg_clear_between(o->a, a, o->b, b, NULL, (csg_vec3){0, 0, 0}, 0, &together) > 0)
         return;
     if (p->state == CSG_CELL_INSIDE && q->state == CSG_CELL_INSIDE) {
         o->sure += volume;

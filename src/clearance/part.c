@@ -21,13 +21,7 @@ static csgm_status refuse_unbounded(csgm_context *context, const char *name)
 
 static void hash_text(void *user, const char *text, size_t length)
 {
-    uint64_t *digest = user;
-    digest[0] = csg_hash_bytes(digest[0], text, length);
-    for (size_t i = 0; i < length; i += sizeof(uint64_t)) {
-        uint64_t word = 0;
-        memcpy(&word, text + i, length - i < sizeof word ? length - i : sizeof word);
-        digest[1] = csg_hash_word(digest[1], word);
-    }
+    csg_digest_text(user, text, length);
 }
 
 /* The text that the scene can be made from again: two with the same text are the same. */

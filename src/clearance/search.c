@@ -9,6 +9,8 @@
  *
  * Cubes that are inside matter where they overlap others alone: of parts that have no point in
  * common the nearest points are on both surfaces.
+ *
+ * The same search looks for the gap on the way from the pose before (motion.h).
  */
 #include "clearance/search.h"
 
@@ -31,6 +33,8 @@ enum {
 /* Of what may be looked at: for how far apart they are, once that they are is known. */
 enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16 };
 static const double NEARLY = 0.9;
+/* Likewise for ways: to find out, and once it is known that they stay apart. */
+enum { SHARE_WAY = 4, SHARE_WAY_DECIDED = 256 };
 
 typedef struct search {
     const csg_clear_task *task;
@@ -40,6 +44,8 @@ typedef struct search {
     double left_size;
     double high; /* nearest are so far apart */
     csg_vec3 nearest[2], inside;
+    const csg_motion *motion; /* of b: the gap on the way is looked for */
+    double goal;              /* then: as much of it is enough */
     bool interferes;
     uint64_t looked, popped, next_try;
     bool out_of_memory;
@@ -137,6 +143,8 @@ static void try_points(search *s, const csg_clear_queued *top)
 static double enough_of(const search *s)
 {
     const csg_clear_task *t = s->task;
+    if (s->motion)
+        return s->goal;
     double enough = s->high < INFINITY ? s->high - csg_clear_room(t, s->high) : INFINITY;
     if (t->min_gap > enough && t->min_gap <= s->high)
         enough = fmin(t->min_gap, s->high - t->tolerance / FINEST);
@@ -164,10 +172,11 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
     csg_vec3 along =
         s->high < INFINITY ? csg_vec3_sub(s->nearest[1], s->nearest[0]) : (csg_vec3){0, 0, 0};
     s->looked++;
-    item.key = fmax(parent_bound, csg_clear_between(&s->a, a, &s->b, b, along, enough, &overlap));
+    item.key = fmax(parent_bound,
+                    csg_clear_between(&s->a, a, &s->b, b, s->motion, along, enough, &overlap));
     bool in_a = s->a.nodes[a].cube.state == CSG_CELL_INSIDE,
          in_b = s->b.nodes[b].cube.state == CSG_CELL_INSIDE;
-    if ((in_a || in_b) && !overlap)
+    if ((in_a || in_b) && (!overlap || s->motion)) /* surfaces are the first to meet on a way */
         return true;
     if (in_a && in_b) {
         csg_vec3 middle = middle_of(s, a, b);
@@ -285,6 +294,68 @@ static bool tell(search *s, csgm_clear_pair *out)
     return done;
 }
 
+/* ---- on the way to the pose before ------------------------------------------------------------
+ * Parts that are apart at its end are apart all the way, unless points of their surfaces meet: the
+ * same search, with bounds that hold all the way.
+ */
+
+/* Of the nearest points even their own way leaves no room: no bound will show it. */
+static bool is_hopeless(const search *s)
+{
+    const csg_clear_task *t = s->task;
+    if (!(s->high < INFINITY))
+        return false;
+    csg_vec3 from = s->nearest[1], to = csg_affine_point(&s->motion->back, from);
+    csg_vec3 way = csg_vec3_sub(to, from), out = csg_vec3_sub(s->nearest[0], from);
+    double square = csg_vec3_dot(way, way);
+    double share = square > 0 ? fmin(fmax(csg_vec3_dot(out, way) / square, 0), 1) : 0;
+    csg_vec3 left = csg_vec3_sub(out, csg_vec3_scale(way, share));
+    return csg_vec3_norm(left) - s->motion->bend * sqrt(square) <= t->min_gap;
+}
+
+static bool is_way_known(const search *s)
+{
+    const csg_clear_task *t = s->task;
+    double low = low_of(s);
+    if (low >= s->goal)
+        return true;
+    return s->looked >=
+           t->most_pairs / (low > 0 && low >= t->min_gap ? SHARE_WAY_DECIDED : SHARE_WAY);
+}
+
+/* gap: at its end, > 0. Uses the trees of `at_end`, which goes on having them. False: stopped, or
+ * out of memory. */
+static bool look_along_way(search *at_end, double gap, csgm_clear_pair *out)
+{
+    const csg_clear_task *t = at_end->task;
+    search s = {.task = t,
+                .a = at_end->a,
+                .b = at_end->b,
+                .left = INFINITY,
+                .high = at_end->high,
+                .nearest = {at_end->nearest[0], at_end->nearest[1]},
+                .motion = t->motion,
+                .goal = fmax(0.5 * gap, t->min_gap)};
+    bool done = true;
+    if (is_hopeless(&s))
+        return true;
+    done = consider(&s, 0, 0, -INFINITY);
+    while (done && s.queue.count && !is_way_known(&s)) {
+        if (++s.popped % ASK_EVERY == 0 && csg_mesh_should_stop(t->watch))
+            done = false;
+        csg_clear_queued top = csg_clear_queue_pop(&s.queue);
+        done = done && divide(&s, &top);
+    }
+    if (done)
+        out->gap_between = fmin(fmax(low_of(&s), 0), gap);
+    out->pairs += s.looked;
+    at_end->out_of_memory |= s.out_of_memory;
+    at_end->a = s.a;
+    at_end->b = s.b;
+    csg_clear_queue_release(&s.queue, s.a.arena.memory);
+    return done && !s.out_of_memory;
+}
+
 bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *out_of_memory)
 {
     search s = {.task = task, .left = INFINITY, .high = INFINITY};
@@ -292,19 +363,26 @@ bool csg_clear_search(const csg_clear_task *task, csgm_clear_pair *out, bool *ou
         s.next_try = LATE;
     if (!task->a->is_open || !task->b->is_open) {
         out->gap = (csgm_interval){INFINITY, INFINITY};
+        out->gap_between = INFINITY;
         return true;
     }
+    out->gap_between = 0;
     bool done = csg_clear_tree_begin(&s.a, task->a, task->worker) &&
                 csg_clear_tree_begin(&s.b, task->b, task->worker);
     s.out_of_memory = !done;
-    if (done && s.a.count && s.b.count) {
+    if (done && s.a.count && s.b.count && task->apart > 0) {
+        done = look_along_way(&s, task->apart, out);
+    } else if (done && s.a.count && s.b.count) {
         done = consider(&s, 0, 0, -INFINITY);
         if (!done)
             s.left = -INFINITY; /* of the only candidate nothing is known */
         done = done && divide_on(&s);
         done = tell(&s, out) && done && !s.out_of_memory;
+        if (done && task->motion && out->state == CSGM_CLEAR_APART)
+            done = look_along_way(&s, out->gap.low, out);
     } else if (done) {
         out->gap = (csgm_interval){INFINITY, INFINITY};
+        out->gap_between = INFINITY;
     } else {
         out->state = CSGM_CLEAR_UNDECIDED;
         out->gap = (csgm_interval){0, INFINITY};

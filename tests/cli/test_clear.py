@@ -82,13 +82,40 @@ class Clear(unittest.TestCase):
         self.assertEqual(pairs["a", "on top"]["poses"], 11)
         found = self.run_on(FOUR, "--over", "t=0:4", status=1)
         self.assertIn('"a" and "b" interfere at t = 4', found.stderr)
-        self.assertIn("between them nothing is claimed", found.stdout.decode())
+        self.assertIn("between poses 3 of 4 steps not covered, first 1 .. 2", found.stdout.decode())
         self.assertIn("2 of 5 interfere", found.stdout.decode())
         whole = json.loads(self.run_on(FOUR, "--over", "t=0:4", "--json", status=1).stdout)
         self.assertEqual(whole["over"], {"parameter": "t", "first": 0, "step": 1, "last": 4})
-        self.assertEqual(whole["between_poses"], "nothing is claimed")
+        self.assertEqual(whole["between_poses"], "of steps that are covered, for parts that move by screws")
         downwards = self.pairs(TWO, "--over", "t=1:-0.1:0")["a", "b"]
         self.assertEqual((downwards["poses"], downwards["worst"]["pose"]), (11, 0))
+
+    def test_between(self):
+        pairs = self.pairs(FOUR, "--over", "t=-1:0.25:1.5", "--between")
+        slides, far, still = pairs["a", "b"], pairs["b", "far"], pairs["a", "on top"]
+        for pair in (slides, far, still):
+            self.assertEqual((pair["steps"], pair["steps_not_covered"]), (10, 0))
+            self.assertNotIn("first_not_covered", pair)
+        self.assertTrue(0.24 < slides["gap_between"] <= 0.5, slides)
+        self.assertTrue(980 < far["gap_between"] < 990)
+        self.assertEqual(still["gap_between"], 0)  # they touch, and do not move
+        self.assertIn("they do not move in relation to each other", self.run_on(FOUR, "--over", "t=0:1").stdout.decode())
+        # it is on the other side of the bar from one pose to the next
+        jumps = 'part("bar") cube([1, 9, 9]); t = 0; part("ball") translate([3 * t - 5, 4, 4]) sphere(1);'
+        pair = self.pairs(jumps, "--over", "t=0:4:8")["bar", "ball"]
+        self.assertEqual((pair["result"], pair["steps"], pair["steps_not_covered"]), ("clear", 2, 1))
+        self.assertEqual(pair["first_not_covered"], [0, 4])
+        report = os.path.join(self.folder, "report.xml")
+        failed = self.run_on(jumps, "--over", "t=0:4:8", "--between", "--junit", report, status=2)
+        self.assertIn('"bar" and "ball" between poses: 1 of 2 steps not covered, first 0 .. 4', failed.stderr)
+        suite = xml.etree.ElementTree.parse(report).getroot()
+        self.assertEqual((suite.get("failures"), suite.get("errors")), ("0", "1"))
+        self.assertIn("1 of 2 steps not covered", suite[0].find("system-out").text)
+        # a ball that grows is not the same ball
+        grows = self.pairs('t = 0; part("a") sphere(1); part("b") translate([9, 0, 0]) sphere(1 + t);', "--over", "t=0:2")
+        self.assertEqual(grows["a", "b"]["steps_not_covered"], 2)
+        self.run_on(TWO, "--over", "t=0:0.25:1", "--between", "--min-gap", 0.9)
+        self.run_on(TWO, "--over", "t=0:1", "--between", "--min-gap", 1.001, status=1)
 
     def test_parts(self):
         self.assertEqual(set(self.pairs(FOUR, "--parts", "b,on top")), {("b", "on top")})
@@ -175,6 +202,7 @@ class Clear(unittest.TestCase):
                 (TWO, ("--over", "t=0:1e-9:1"), ("more than 1000000 poses",)),
                 (TWO, ("--over", "tt=0:1"), ("'t'",)),
                 (TWO, ("--min-gap", "-1"), ("--min-gap",)),
+                (TWO, ("--between",), ("--between needs --over",)),
                 (TWO + "cub(1);", (), ("cube",))):
             with self.subTest(options or scene):
                 result = self.run_on(scene, *options, status=2)

@@ -56,6 +56,9 @@ def test_clearances(folder):
         (pair,) = csgmesh.clear(source, poses=poses)
         assert (pair.state, pair.pose, pair.poses_bad) == ("interfering", 2, 1)
         assert pair.volume[0] > 0 and pair.nearest is None and 0.5 < pair.inside[0] < 1
+    assert (pair.steps, pair.steps_open, pair.first_open) == (3, 2, 2) and pair.gap_between == 0
+    (pair,) = csgmesh.clear(BOXES, poses=[{"t": t} for t in (4, 3.75, 3.5)])
+    assert (pair.steps_open, pair.first_open) == (0, None) and 0.7 < pair.gap_between <= 1.5
     (pair,) = csgmesh.clear(BOXES, define={"t": 2.5}, min_gap=0.6)
     assert (pair.poses_bad, pair.poses_open) == (1, 0)
     assert csgmesh.clear(csgmesh.code(BOXES.replace("t,", "9,")), parts="a")[0].state == "apart"

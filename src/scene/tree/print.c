@@ -326,3 +326,9 @@ csgm_status csg_scene_print(const csgm_scene *scene, csgm_text_fn *sink, void *u
     csg_memory_release(&scene->context->memory, w.open, w.open_capacity * sizeof *w.open);
     return status;
 }
+
+bool csg_scene_print_node(const csgm_scene *scene, csg_node_id node, csgm_text_fn *sink, void *user)
+{
+    const csg_printer out = {scene, sink, user};
+    return put_node(&out, &scene->nodes[node]);
+}

@@ -28,6 +28,20 @@ static void put_pose(cli_json *json, const cli_cleared *c, size_t pose)
     cli_json_verbatim(json, c->over->name, cli_over_value(c->over, pose, value));
 }
 
+static void put_steps(cli_json *json, const cli_cleared *c, const csgm_clear_pair *p)
+{
+    char value[CLI_OVER_TEXT];
+    cli_json_count(json, "steps", p->steps);
+    cli_json_count(json, "steps_not_covered", p->steps_open);
+    if (p->steps_open) {
+        cli_json_open(json, "first_not_covered", '[');
+        for (size_t i = 0; i < 2; i++)
+            cli_json_verbatim(json, NULL, cli_over_value(c->over, p->first_open - 1 + i, value));
+        cli_json_end(json, ']');
+    }
+    cli_json_number(json, "gap_between", p->gap_between);
+}
+
 static void put_pair(cli_json *json, const cli_cleared *c, const csgm_clear_pair *p)
 {
     static const char *const verdicts[] = {"clear", "undecided", "not clear"};
@@ -36,7 +50,7 @@ static void put_pair(cli_json *json, const cli_cleared *c, const csgm_clear_pair
     put_text(json, NULL, p->names[0]);
     put_text(json, NULL, p->names[1]);
     cli_json_end(json, ']');
-    cli_json_string(json, "result", verdicts[cli_verdict_of(p)]);
+    cli_json_string(json, "result", verdicts[cli_verdict_of(c, p)]);
     cli_json_string(json, "state", cli_clear_state_name(p->state));
     if (c->over->name) {
         cli_json_open(json, "worst", '{');
@@ -45,6 +59,7 @@ static void put_pair(cli_json *json, const cli_cleared *c, const csgm_clear_pair
         cli_json_count(json, "poses", p->poses);
         cli_json_count(json, "poses_not_clear", p->poses_bad);
         cli_json_count(json, "poses_undecided", p->poses_open);
+        put_steps(json, c, p);
     }
     put_interval(json, "gap", p->gap);
     cli_json_bool(json, "by_boxes", p->by_boxes);
@@ -79,7 +94,8 @@ void cli_clear_json(const cli_cleared *c)
         cli_json_number(&json, "step", c->over->step);
         cli_json_number(&json, "last", c->over->last);
         cli_json_end(&json, '}');
-        cli_json_string(&json, "between_poses", "nothing is claimed");
+        cli_json_string(&json, "between_poses",
+                        "of steps that are covered, for parts that move by screws");
     }
     cli_json_count(&json, "poses", c->poses);
     cli_json_open(&json, "pairs", '[');

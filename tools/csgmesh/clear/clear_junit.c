@@ -10,7 +10,7 @@
 static void put_case(FILE *out, const cli_cleared *c, const csgm_clear_pair *p)
 {
     char a[96], b[96], text[600];
-    cli_verdict verdict = cli_verdict_of(p);
+    cli_verdict verdict = cli_verdict_of(c, p);
     fputs("  <testcase classname=\"", out);
     cli_put_markup(out, c->path, CLI_XML_LINES);
     fputs("\" name=\"", out);
@@ -24,6 +24,12 @@ static void put_case(FILE *out, const cli_cleared *c, const csgm_clear_pair *p)
         cli_put_markup(out, text, CLI_XML_LINES);
         fputs("\"/>", out);
     }
+    if (p->steps) {
+        cli_clear_say_between(c, p, text, sizeof text);
+        fputs("<system-out>between poses: ", out);
+        cli_put_markup(out, text, CLI_XML_LINES);
+        fputs("</system-out>", out);
+    }
     fputs("</testcase>\n", out);
 }
 
@@ -34,8 +40,8 @@ int cli_clear_junit(cli_app *app, const cli_cleared *c)
     const csgm_clear_pair *p;
     for (size_t i = 0; (p = csgm_clearances_get(c->pairs, i)) != NULL; i++) {
         counts.tests++;
-        counts.failures += cli_verdict_of(p) == CLI_PAIR_BAD;
-        counts.errors += cli_verdict_of(p) == CLI_PAIR_OPEN;
+        counts.failures += cli_verdict_of(c, p) == CLI_PAIR_BAD;
+        counts.errors += cli_verdict_of(c, p) == CLI_PAIR_OPEN;
     }
     if (cli_text_open(&text)) {
         cli_junit_open(text.out, "clear", &counts);

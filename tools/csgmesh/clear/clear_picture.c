@@ -39,9 +39,9 @@ typedef struct painter {
 /* ---- the pair ----------------------------------------------------------------------------------
  */
 
-static bool is_worse(const csgm_clear_pair *p, const csgm_clear_pair *than)
+static bool is_worse(const cli_cleared *c, const csgm_clear_pair *p, const csgm_clear_pair *than)
 {
-    cli_verdict a = cli_verdict_of(p), b = cli_verdict_of(than);
+    cli_verdict a = cli_verdict_of(c, p), b = cli_verdict_of(c, than);
     bool interferes = p->state == CSGM_CLEAR_INTERFERING;
     if (a != b)
         return a > b;
@@ -58,7 +58,7 @@ const csgm_clear_pair *cli_clear_worst(const cli_cleared *c)
 {
     const csgm_clear_pair *p, *worst = NULL;
     for (size_t i = 0; (p = csgm_clearances_get(c->pairs, i)) != NULL; i++)
-        if (p->poses && !isinf(p->gap.low) && (!worst || is_worse(p, worst)))
+        if (p->poses && !isinf(p->gap.low) && (!worst || is_worse(c, p, worst)))
             worst = p;
     return worst;
 }
@@ -255,7 +255,7 @@ static void write_words(painter *p)
     char a[96], b[96], pose[160], line[800], interval[CLI_INTERVAL_TEXT];
     bool interferes = pair->state == CSGM_CLEAR_INTERFERING;
     int width = (int)p->canvas.width, y = BAND + TALL + 14;
-    cli_verdict verdict = cli_verdict_of(pair);
+    cli_verdict verdict = cli_verdict_of(p->cleared, pair);
     cli_clear_pose(p->cleared, pair, pose, sizeof pose);
     snprintf(line, sizeof line, "%s and %s: %s%s", cli_clear_name(pair->names[0], a),
              cli_clear_name(pair->names[1], b), cli_clear_state_name(pair->state), pose);

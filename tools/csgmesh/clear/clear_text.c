@@ -9,9 +9,10 @@
 
 enum { FAR_MOST = 20 /* pairs whose boxes are far apart that have lines of their own */ };
 
-cli_verdict cli_verdict_of(const csgm_clear_pair *pair)
+cli_verdict cli_verdict_of(const cli_cleared *c, const csgm_clear_pair *pair)
 {
-    return pair->poses_bad ? CLI_PAIR_BAD : pair->poses_open ? CLI_PAIR_OPEN : CLI_PAIR_CLEAR;
+    bool is_open = pair->poses_open || (c->between && pair->steps_open);
+    return pair->poses_bad ? CLI_PAIR_BAD : is_open ? CLI_PAIR_OPEN : CLI_PAIR_CLEAR;
 }
 
 const char *cli_clear_state_name(csgm_clear_state state)
@@ -37,6 +38,21 @@ void cli_clear_pose(const cli_cleared *c, const csgm_clear_pair *pair, char *tex
                  cli_over_value(c->over, pair->pose, value));
 }
 
+void cli_clear_say_between(const cli_cleared *c, const csgm_clear_pair *p, char *text, size_t size)
+{
+    char before[CLI_OVER_TEXT], after[CLI_OVER_TEXT], gap[CLI_INTERVAL_TEXT];
+    if (p->steps_open)
+        snprintf(text, size, "%zu of %zu steps not covered, first %s .. %s", p->steps_open,
+                 p->steps, cli_over_value(c->over, p->first_open - 1, before),
+                 cli_over_value(c->over, p->first_open, after));
+    else if (isinf(p->gap_between))
+        snprintf(text, size, "one of them is empty");
+    else if (p->gap_between > 0)
+        snprintf(text, size, "a gap of at least %s", cli_format_least(gap, p->gap_between, 3));
+    else
+        snprintf(text, size, "they do not move in relation to each other");
+}
+
 void cli_clear_say(const cli_cleared *c, const csgm_clear_pair *pair, char *text, size_t size)
 {
     char a[96], b[96], pose[160], gap[CLI_INTERVAL_TEXT];
@@ -46,10 +62,13 @@ void cli_clear_say(const cli_cleared *c, const csgm_clear_pair *pair, char *text
                *second = cli_clear_name(pair->names[1], b);
     if (pair->state == CSGM_CLEAR_INTERFERING)
         snprintf(text, size, "%s and %s interfere%s", first, second, pose);
-    else if (cli_verdict_of(pair) == CLI_PAIR_BAD)
+    else if (cli_verdict_of(c, pair) == CLI_PAIR_BAD)
         snprintf(text, size, "%s and %s are closer than %g: %g at most%s", first, second,
                  c->min_gap, pair->gap.high, pose);
-    else if (pair->state == CSGM_CLEAR_UNDECIDED)
+    else if (!pair->poses_open) {
+        cli_clear_say_between(c, pair, gap, sizeof gap);
+        snprintf(text, size, "%s and %s between poses: %s", first, second, gap);
+    } else if (pair->state == CSGM_CLEAR_UNDECIDED)
         snprintf(text, size, "whether %s and %s interfere could not be told%s", first, second,
                  pose);
     else
@@ -75,7 +94,8 @@ static void print_gap(const csgm_clear_pair *p)
     if (isinf(p->gap.low))
         puts("    gap           one of them is empty");
     else if (isinf(p->gap.high))
-        printf("    gap           at least %.6g%s\n", p->gap.low,
+        printf("    gap           at least %s%s\n",
+               p->gap.low > 0 ? cli_format_least(text, p->gap.low, 6) : "0",
                p->by_boxes ? ", by their boxes" : "");
     else
         printf("    gap           %s\n", cli_format_interval(text, p->gap));
@@ -88,7 +108,7 @@ static void print_gap(const csgm_clear_pair *p)
 
 static void print_pair(const cli_cleared *c, const csgm_clear_pair *p)
 {
-    char a[96], b[96], pose[160];
+    char a[96], b[96], pose[160], between[160];
     const char *first = cli_clear_name(p->names[0], a), *second = cli_clear_name(p->names[1], b);
     cli_clear_pose(c, p, pose, sizeof pose);
     printf("  %s and %s: %s", first, second, cli_clear_state_name(p->state));
@@ -106,6 +126,10 @@ static void print_pair(const cli_cleared *c, const csgm_clear_pair *p)
                c->min_gap > 0 ? "are too close" : "interfere");
     if (c->over->name && p->poses_open)
         printf("    poses         %zu of %zu could not be told\n", p->poses_open, p->poses);
+    if (p->steps) {
+        cli_clear_say_between(c, p, between, sizeof between);
+        printf("    between poses %s\n", between);
+    }
 }
 
 void cli_clear_text(const cli_cleared *c)
@@ -116,8 +140,8 @@ void cli_clear_text(const cli_cleared *c)
     double least = INFINITY;
     printf("%s: ", c->path);
     if (c->over->name)
-        printf("%zu poses, %s = %s .. %s; between them nothing is claimed\n", c->poses,
-               c->over->name, cli_over_value(c->over, 0, first),
+        printf("%zu poses, %s = %s .. %s\n", c->poses, c->over->name,
+               cli_over_value(c->over, 0, first),
                cli_over_value(c->over, c->poses ? c->poses - 1 : 0, last));
     else
         puts("as it stands");

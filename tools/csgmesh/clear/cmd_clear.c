@@ -140,13 +140,13 @@ static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_cleara
     return status;
 }
 
-static cli_verdict worst_verdict(const csgm_clearances *pairs)
+static cli_verdict worst_verdict(const cli_cleared *c)
 {
     cli_verdict worst = CLI_PAIR_CLEAR;
     const csgm_clear_pair *p;
-    for (size_t i = 0; (p = csgm_clearances_get(pairs, i)) != NULL; i++)
-        if (cli_verdict_of(p) > worst)
-            worst = cli_verdict_of(p);
+    for (size_t i = 0; (p = csgm_clearances_get(c->pairs, i)) != NULL; i++)
+        if (cli_verdict_of(c, p) > worst)
+            worst = cli_verdict_of(c, p);
     return worst;
 }
 
@@ -157,7 +157,7 @@ static void say_faults(cli_app *app, const cli_cleared *cleared)
     size_t said = 0;
     char text[600];
     for (size_t i = 0; (p = csgm_clearances_get(cleared->pairs, i)) != NULL; i++) {
-        if (cli_verdict_of(p) == CLI_PAIR_CLEAR || ++said > SAID_MOST)
+        if (cli_verdict_of(cleared, p) == CLI_PAIR_CLEAR || ++said > SAID_MOST)
             continue;
         cli_clear_say(cleared, p, text, sizeof text);
         cli_console_say(&app->console, CSGM_ERROR, NULL, "%s: %s", cleared->path, text);
@@ -178,7 +178,7 @@ static int print(cli_app *app, const cli_cleared *cleared, csgm_status status)
     if (!o->clear_junit || strcmp(o->clear_junit, "-") != 0)
         (o->json ? cli_clear_json : cli_clear_text)(cleared);
     say_faults(app, cleared);
-    cli_verdict worst = worst_verdict(cleared->pairs);
+    cli_verdict worst = worst_verdict(cleared);
     int result = worst == CLI_PAIR_BAD                          ? CLI_INPUT_AT_FAULT
                  : worst == CLI_PAIR_OPEN || is_stopped(status) ? CLI_TROUBLE
                                                                 : CLI_DONE;
@@ -222,7 +222,7 @@ static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
 {
     const cli_options *o = app->options;
     csgm_clear_options options = csgm_clear_options_default();
-    cli_cleared cleared = {.path = o->operands.items[0], .over = over};
+    cli_cleared cleared = {.path = o->operands.items[0], .over = over, .between = o->clear_between};
     csgm_clearances *pairs = NULL;
     options.tolerance = o->clear_to;
     options.min_gap = cleared.min_gap = o->clear_min_gap;
@@ -253,6 +253,8 @@ int cli_cmd_clear(cli_app *app)
     if (app->options->clear_over && strcmp(operands->items[0], "-") == 0)
         return cli_usage_error(app, NULL,
                                "--over reads the scene many times, and standard input comes once");
+    if (app->options->clear_between && !app->options->clear_over)
+        return cli_usage_error(app, "as --over t=0:0.01:1", "--between needs --over");
     int status = cli_over_read(app, app->options->clear_over, &over);
     if (status == CLI_DONE)
         status = check_picture(app);

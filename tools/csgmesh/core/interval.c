@@ -39,3 +39,12 @@ const char *cli_format_interval(char text[CLI_INTERVAL_TEXT], csgm_interval inte
     snprintf(text, CLI_INTERVAL_TEXT, "%s .. %s", low, high);
     return text;
 }
+
+const char *cli_format_least(char text[CLI_INTERVAL_TEXT], double value, int digits)
+{
+    double decimals = fmin(fmax(digits - 1 - floor(log10(value)), 0), MOST_DECIMALS);
+    char least[END];
+    put_end(least, value, (int)decimals, -1);
+    snprintf(text, CLI_INTERVAL_TEXT, "%s", least);
+    return text;
+}

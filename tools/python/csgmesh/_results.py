@@ -633,7 +633,8 @@ def _measures(call: Call, answer: tuple[str, Any]) -> SimpleNamespace:
 
 
 class Clearance(NamedTuple):
-    """What is proven of two parts over all poses: that of the worst. Between poses nothing is known."""
+    """What is proven of two parts over all poses: that of the worst. A step, from one pose to the next, is covered if the two
+    are proven to stay clear on the way, each being the same part, and the one moving in relation to the other by a screw."""
 
     parts: tuple[Optional[str], Optional[str]]
     state: str  #: "apart", "touching", "undecided" or "interfering", at the worst pose
@@ -646,6 +647,10 @@ class Clearance(NamedTuple):
     poses: int  #: at which both are there
     poses_bad: int  #: those where they interfere, or are less than min_gap apart
     poses_open: int  #: those where that could not be told
+    steps: int  #: from one pose to the next, where both are there at both
+    steps_open: int  #: those that are not covered: nothing is claimed of them
+    first_open: Optional[int]  #: the pose that the first of these leads to
+    gap_between: float  #: at no pose, and in no step that is covered, is the gap less
 
 
 def clear(source: Union[str, "os.PathLike[str]", SolidBase], poses: Sequence[Mapping[str, Any]] = ({},),

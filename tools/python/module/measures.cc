@@ -128,6 +128,10 @@ nb::dict clear_pair_of(const csgm_clear_pair &p)
     out["poses"] = p.poses;
     out["poses_bad"] = p.poses_bad;
     out["poses_open"] = p.poses_open;
+    out["steps"] = p.steps;
+    out["steps_open"] = p.steps_open;
+    out["first_open"] = p.steps_open ? nb::object(nb::int_(p.first_open)) : nb::none();
+    out["gap_between"] = p.gap_between;
     return out;
 }
 
