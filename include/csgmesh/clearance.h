@@ -67,7 +67,7 @@ typedef struct csgm_clear_pair {
      * screw that leads from the one pose to the next (a turn around an axis by 180 degrees at most,
      * and a shift along it). That is how bodies on a common hinge, slide or thread move; what moves
      * otherwise is covered as long as it strays from there by less than gap_between. Also covered
-     * are steps in which neither moves in relation to the other. */
+     * are steps in which neither moves in relation to the other, but for rounding. */
     size_t steps;
     size_t steps_open;  /* those that are not covered: of them nothing is claimed */
     size_t first_open;  /* the pose that the first of these leads to; 0: there is none */

@@ -23,7 +23,7 @@ typedef struct part {
     size_t index;            /* among the pose's parts */
     bool is_there, is_fresh; /* at this pose; .at is of this pose */
     csg_placement placed[2]; /* at this pose: that of its parity; and at the pose before */
-    csg_affine back;         /* from this pose to the one before, where has_motion */
+    csg_affine back, forth;  /* from this pose to the one before, and to it; where has_motion */
     double reach;            /* of both placements and the box */
     bool was_there, has_motion, is_still;
 } part;
@@ -209,13 +209,13 @@ static bool place_part(const csgm_clearances *c, part *p, const csg_parts *parts
 {
     const csg_placement *before = &p->placed[(c->poses + 1) % 2];
     csg_placement *now = &p->placed[c->poses % 2];
-    csg_affine none = csg_affine_identity();
     if (csg_placement_take(now, parts, p->index) != CSGM_OK)
         return false;
-    p->has_motion = p->was_there && csg_placement_motion(now, before, &p->back);
+    p->has_motion = p->was_there && csg_placement_motion(now, before, &p->back) &&
+                    csg_affine_invert(p->back, &p->forth);
     p->is_still = p->has_motion && csg_placement_is_same(now, before);
     if (p->is_still)
-        p->back = none;
+        p->back = p->forth = csg_affine_identity();
     p->reach = csg_placement_reach(now) + 4 * farthest_of(p->box); /* cubes reach beyond the box */
     if (p->was_there)
         p->reach += csg_placement_reach(before);
@@ -364,6 +364,13 @@ static double most_of(const csg_motion *motion, const part *p)
     return csg_motion_most(motion, csg_box_center(p->box), radius);
 }
 
+/* The box that the part is in all the way: that of both ends, and of what bends. */
+static csg_box box_of_way(const csg_motion *motion, const part *p)
+{
+    csg_box both = csg_box_hull(p->box, csg_affine_box(&motion->back, p->box));
+    return csg_box_grow(both, motion->bend * most_of(motion, p) + motion->slack);
+}
+
 static void cover(pair *p, double apart)
 {
     p->step = STEP_COVERED;
@@ -384,16 +391,25 @@ static void begin_step(const csgm_clearances *c, pair *p)
     }
     if (!isfinite(reach))
         return;
-    csg_motion of_b = csg_motion_between(&b->back, &a->back, reach),
-               of_a = csg_motion_between(&a->back, &b->back, reach);
-    double most_a = most_of(&of_a, a), most_b = most_of(&of_b, b), most = fmin(most_a, most_b);
+    csg_motion of_b = csg_motion_between(&b->back, &a->forth, reach);
+    double most_b = most_of(&of_b, b), least = c->options.min_gap;
+    double left = fmax(apart - most_b, box_distance(a->box, box_of_way(&of_b, b)));
+    if (most_b <= 2 * of_b.slack) {
+        cover(p, INFINITY);
+        return;
+    }
+    if (left > 0 && left >= least) {
+        cover(p, left);
+        return;
+    }
+    csg_motion of_a = csg_motion_between(&a->back, &b->forth, reach);
+    double most_a = most_of(&of_a, a);
+    left = fmax(apart - most_a, box_distance(box_of_way(&of_a, a), b->box));
     p->moves_first = most_a < most_b;
     p->motion = p->moves_first ? of_a : of_b;
     p->step = STEP_ASKED;
-    if (most <= 2 * p->motion.slack)
-        cover(p, INFINITY);
-    else if (apart - most > 0 && apart - most >= c->options.min_gap)
-        cover(p, apart - most);
+    if (left > 0 && left >= least)
+        cover(p, left);
 }
 
 /* ---- what searches tell ------------------------------------------------------------------------

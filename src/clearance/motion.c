@@ -13,21 +13,25 @@
 #include "base/elementary.h"
 #include "scene/tree/placement.h"
 
-csg_motion csg_motion_between(const csg_affine *of_mover, const csg_affine *of_other, double reach)
+/* No less than the arc sine, and nearly it: up to 0.5 its series, whose terms are all positive,
+ * stays below this. */
+static double above_asin(double x)
+{
+    return x <= 0.5 ? x * (1 + 0.189 * x * x) : csg_asin(x);
+}
+
+csg_motion csg_motion_between(const csg_affine *mover_back, const csg_affine *other_forth,
+                              double reach)
 {
     static const double OUTWARD = 1e-10; /* of the matrix, rounded and not quite a rotation */
-    csg_affine forth;
-    csg_motion out = {.back = csg_affine_identity(), .turn = INFINITY, .bend = INFINITY};
+    csg_motion out = {.back = csg_affine_multiply(*other_forth, *mover_back)};
     double square = 0;
-    if (!csg_affine_invert(*of_other, &forth))
-        return out;
-    out.back = csg_affine_multiply(forth, *of_mover);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             double e = out.back.m[i][k] - (i == k);
             square += e * e;
         }
-    double sine = fmin(sqrt(square / 8) + OUTWARD, 1), half = csg_asin(sine);
+    double sine = fmin(sqrt(square / 8) + OUTWARD, 1), half = above_asin(sine);
     out.turn = 2 * sine;
     out.bend = half * half / (4 * sine);
     out.slack = 4 * CSG_MOTION_ROUNDING * reach;

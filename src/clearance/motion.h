@@ -17,10 +17,11 @@ typedef struct csg_motion {
     double slack; /* by which the images may be off; scene units */
 } csg_motion;
 
-/* of_mover, of_other: from each part's place at the later pose to that at the earlier one
- * (csg_placement_motion); reach: of both placements and of all points that will be asked for, the
- * largest distance from the origin. */
-csg_motion csg_motion_between(const csg_affine *of_mover, const csg_affine *of_other, double reach);
+/* mover_back: from the mover's place at the later pose to that at the earlier one
+ * (csg_placement_motion), other_forth: of the other part, the other way; reach: of both placements
+ * and of all points that will be asked for, the largest distance from the origin. */
+csg_motion csg_motion_between(const csg_affine *mover_back, const csg_affine *other_forth,
+                              double reach);
 
 /* The most that a point of the ball is moved. */
 double csg_motion_most(const csg_motion *motion, csg_vec3 center, double radius);
