@@ -17,7 +17,7 @@ enum { MOST_FRAMES = 1 << 14 };
 
 /* Frames whose largest singular value is more than this times the smallest are not compared: their
  * inverses would be off by more than CLOSE. */
-static const double FLATTEST = 1e3, CLOSE = 1e-11;
+static const double FLATTEST = 1e2, CLOSE = 1e-11;
 
 typedef struct waiting {
     csg_node_id node;
