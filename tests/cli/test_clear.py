@@ -117,6 +117,22 @@ class Clear(unittest.TestCase):
         self.run_on(TWO, "--over", "t=0:0.25:1", "--between", "--min-gap", 0.9)
         self.run_on(TWO, "--over", "t=0:1", "--between", "--min-gap", 1.001, status=1)
 
+    def test_refine(self):
+        swings = 't = 0; part("post") translate([10, 0, 0]) sphere(1); part("ball") rotate(t) translate([7.9, 0, 0]) sphere(1);'
+        whole = ("--over", "t=-80:160:80", "--between")
+        self.assertEqual(self.pairs(swings, *whole, status=2)["post", "ball"]["steps_not_covered"], 1)
+        halved = self.pairs(swings, *whole, "--refine", 5)["post", "ball"]
+        self.assertTrue(2 < halved["steps"] == halved["poses"] - 1 <= 32, halved)
+        self.assertEqual((halved["steps_not_covered"], halved["worst"]["t"]), (0, 0))
+        self.assertTrue(0 < halved["gap_between"] <= 0.1 <= halved["gap"][1] < 0.11, halved)
+        # what interferes on the way is found, and what cannot be covered is halved so often and no more
+        hits = self.pairs(swings.replace("7.9", "8.1"), *whole, "--refine", 5, status=1)["post", "ball"]
+        self.assertEqual((hits["state"], hits["worst"]["t"]), ("interfering", 0))
+        slides = self.pairs('t = 0; part("a") cube(1); part("b") translate([1, t, 0]) cube(1);', "--over", "t=0:1", "--refine", 3)
+        self.assertEqual((slides["a", "b"]["steps"], slides["a", "b"]["steps_not_covered"]), (8, 8))
+        late = self.run_on(swings, "--over", "t=-80:0.01:80", "--refine", 16, "--to", 1e-7, "--timeout", 0.25, status=2)
+        self.assertIn("longer than the limit of 0.25 s", late.stderr)
+
     def test_parts(self):
         self.assertEqual(set(self.pairs(FOUR, "--parts", "b,on top")), {("b", "on top")})
         pairs = self.pairs(FOUR, "--parts", "far")
@@ -203,6 +219,8 @@ class Clear(unittest.TestCase):
                 (TWO, ("--over", "tt=0:1"), ("'t'",)),
                 (TWO, ("--min-gap", "-1"), ("--min-gap",)),
                 (TWO, ("--between",), ("--between needs --over",)),
+                (TWO, ("--refine", "2"), ("--refine needs --over",)),
+                (TWO, ("--over", "t=0:1", "--refine", "17"), ("16 times at most",)),
                 (TWO + "cub(1);", (), ("cube",))):
             with self.subTest(options or scene):
                 result = self.run_on(scene, *options, status=2)

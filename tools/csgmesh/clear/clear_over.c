@@ -56,16 +56,43 @@ int cli_over_read(cli_app *app, const char *text, cli_over *out)
     return out->name ? CLI_DONE : cli_usage_error(app, NULL, "out of memory");
 }
 
+/* As a number: 0 is what is meant by what is nearly 0. */
+static double value_at(const cli_over *over, size_t pose)
+{
+    double value = over->values ? over->values[pose] : over->first + (double)pose * over->step;
+    return fabs(value) < 1e-9 * fabs(over->step) ? 0 : value;
+}
+
+int cli_over_halve(cli_app *app, cli_over *over, const bool *open)
+{
+    size_t count = over->count;
+    for (size_t i = 1; i < over->count; i++)
+        count += open[i];
+    if (count > CLI_OVER_MOST)
+        return cli_usage_error(app, "a smaller --refine makes fewer",
+                               "--refine makes more than %d poses", CLI_OVER_MOST);
+    double *values = calloc(count, sizeof *values);
+    if (!values)
+        return cli_usage_error(app, NULL, "out of memory");
+    for (size_t i = 0, at = 0; i < over->count; i++) {
+        if (i > 0 && open[i])
+            values[at++] = 0.5 * (value_at(over, i - 1) + value_at(over, i));
+        values[at++] = value_at(over, i);
+    }
+    free(over->values);
+    over->values = values;
+    over->count = count;
+    return CLI_DONE;
+}
+
 void cli_over_release(cli_over *over)
 {
     free(over->name);
+    free(over->values);
 }
 
 const char *cli_over_value(const cli_over *over, size_t pose, char text[CLI_OVER_TEXT])
 {
-    double value = over->first + (double)pose * over->step;
-    if (fabs(value) < 1e-9 * fabs(over->step)) /* 0 is what is meant */
-        value = 0;
-    snprintf(text, CLI_OVER_TEXT, "%.12g", value);
+    snprintf(text, CLI_OVER_TEXT, "%.12g", value_at(over, pose));
     return text;
 }

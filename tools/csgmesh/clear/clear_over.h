@@ -12,10 +12,14 @@ typedef struct cli_over {
     char *name; /* NULL: there is one pose, the scene as it is */
     double first, step, last;
     size_t count;
+    double *values; /* NULL: first + pose * step */
 } cli_over;
 
 /* text: NULL without --over. CLI_DONE, or CLI_TROUBLE (reported). */
 int cli_over_read(cli_app *app, const char *text, cli_over *out);
+/* A value half way to each pose of `open` (count of them) from the pose before. CLI_DONE, or
+ * CLI_TROUBLE (reported) with the values as they were. */
+int cli_over_halve(cli_app *app, cli_over *over, const bool *open);
 void cli_over_release(cli_over *over);
 /* The value of a pose as it is given to the scene and told. */
 const char *cli_over_value(const cli_over *over, size_t pose, char text[CLI_OVER_TEXT]);

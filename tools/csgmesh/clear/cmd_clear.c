@@ -15,7 +15,7 @@
 #include "core/sources.h"
 #include "render/picture_options.h"
 
-enum { SAID_MOST = 20 /* pairs that are told one by one as errors */ };
+enum { SAID_MOST = 20 /* pairs that are told one by one as errors */, REFINE_MOST = 16 };
 
 /* --parts as a list of names, and the text that these are in. */
 typedef struct wanted_parts {
@@ -24,10 +24,11 @@ typedef struct wanted_parts {
     size_t count;
 } wanted_parts;
 
-static bool ask_interrupted(void *user)
+/* user: the time when --timeout is over, for what is begun anew; 0: it counts itself. */
+static bool should_stop(void *user)
 {
-    (void)user;
-    return cli_interrupt_is_asked();
+    const double *until_s = user;
+    return cli_interrupt_is_asked() || (*until_s > 0 && cli_now_s() > *until_s);
 }
 
 static int no_memory(cli_app *app)
@@ -110,11 +111,22 @@ static bool is_stopped(csgm_status status)
     return status == CSGM_ERR_LIMIT || status == CSGM_ERR_MEMORY || status == CSGM_CANCELLED;
 }
 
-/* All poses, as far as they go. */
+/* Steps that are not covered of pairs that are clear so far: those that smaller steps may cover. */
+static size_t count_open(const csgm_clearances *pairs)
+{
+    size_t count = 0;
+    const csgm_clear_pair *p;
+    for (size_t i = 0; (p = csgm_clearances_get(pairs, i)) != NULL; i++)
+        count += p->poses_bad + p->poses_open ? 0 : p->steps_open;
+    return count;
+}
+
+/* All poses, as far as they go. open: over->count of them, those whose step is not covered. */
 static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_clearances *pairs,
-                                 const wanted_parts *wanted, size_t *poses)
+                                 const wanted_parts *wanted, size_t *poses, bool *open)
 {
     csgm_status status = CSGM_OK;
+    size_t open_count = 0;
     for (size_t i = 0; i < over->count && status == CSGM_OK; i++) {
         csgm_scene *scene = NULL;
         status = load_pose(app, over, i, &scene);
@@ -131,6 +143,9 @@ static csgm_status look_at_poses(cli_app *app, const cli_over *over, csgm_cleara
             *poses += status == CSGM_OK || (is_stopped(status) && i == 0);
             if (status == CSGM_ERR_ARGUMENT)
                 say_missing(app, pairs, wanted);
+            size_t now = count_open(pairs);
+            open[i] = now > open_count;
+            open_count = now;
         }
         csgm_scene_destroy(scene);
         if (over->count > 1)
@@ -218,7 +233,47 @@ static int check_picture(cli_app *app)
     return o->clear_picture ? cli_picture_check(app, o->clear_picture) : CLI_DONE;
 }
 
-static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
+/* With --refine: whether there is a step to be halved; then it is. */
+static bool refine(cli_app *app, cli_over *over, const bool *open, uint64_t round)
+{
+    bool is_any = false;
+    for (size_t i = 1; i < over->count; i++)
+        is_any |= open[i];
+    return is_any && round < app->options->clear_refine &&
+           cli_over_halve(app, over, open) == CLI_DONE;
+}
+
+/* Again and again, while steps are halved: what is halved is begun anew. */
+static csgm_status look_at_all(cli_app *app, csgm_clear_options *options, cli_over *over,
+                               const wanted_parts *wanted, size_t *poses, csgm_clearances **pairs)
+{
+    csgm_status status;
+    bool is_again = false;
+    double began_s = cli_now_s(), limit = app->options->timeout, until_s = 0;
+    options->monitor = (csgm_monitor){.cancelled = should_stop, .user = &until_s};
+    for (uint64_t round = 0;; round++) {
+        bool *open = calloc(over->count, sizeof *open);
+        csgm_clearances_destroy(*pairs);
+        *pairs = NULL;
+        *poses = 0;
+        status = open ? csgm_clearances_create(app->context, options, pairs) : CSGM_ERR_MEMORY;
+        if (status == CSGM_OK)
+            status = look_at_poses(app, over, *pairs, wanted, poses, open);
+        is_again = status == CSGM_OK && refine(app, over, open, round);
+        free(open);
+        if (!is_again)
+            break;
+        until_s = limit > 0 ? began_s + limit : 0;
+    }
+    if (status != CSGM_CANCELLED || cli_interrupt_is_asked())
+        return status;
+    cli_console_say(&app->console, CSGM_ERROR, NULL,
+                    "halving steps took longer than the limit of %g s: this is proven so far",
+                    limit);
+    return CSGM_ERR_LIMIT;
+}
+
+static int clear(cli_app *app, cli_over *over, const wanted_parts *wanted)
 {
     const cli_options *o = app->options;
     csgm_clear_options options = csgm_clear_options_default();
@@ -228,11 +283,8 @@ static int clear(cli_app *app, const cli_over *over, const wanted_parts *wanted)
     options.min_gap = cleared.min_gap = o->clear_min_gap;
     options.parts = wanted->names;
     options.part_count = wanted->count;
-    options.monitor = (csgm_monitor){.cancelled = ask_interrupted, .user = &app->console};
     app->varied = over->name;
-    csgm_status status = csgm_clearances_create(app->context, &options, &pairs);
-    if (status == CSGM_OK)
-        status = look_at_poses(app, over, pairs, wanted, &cleared.poses);
+    csgm_status status = look_at_all(app, &options, over, wanted, &cleared.poses, &pairs);
     cleared.pairs = pairs;
     int result = pairs ? print(app, &cleared, status) : CLI_TROUBLE;
     if (pairs && draw(app, &cleared, status) != CLI_DONE)
@@ -255,6 +307,10 @@ int cli_cmd_clear(cli_app *app)
                                "--over reads the scene many times, and standard input comes once");
     if (app->options->clear_between && !app->options->clear_over)
         return cli_usage_error(app, "as --over t=0:0.01:1", "--between needs --over");
+    if (app->options->clear_refine && !app->options->clear_over)
+        return cli_usage_error(app, "as --over t=0:0.01:1", "--refine needs --over");
+    if (app->options->clear_refine > REFINE_MOST)
+        return cli_usage_error(app, NULL, "--refine halves a step %d times at most", REFINE_MOST);
     int status = cli_over_read(app, app->options->clear_over, &over);
     if (status == CLI_DONE)
         status = check_picture(app);
