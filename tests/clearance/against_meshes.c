@@ -172,31 +172,6 @@ static double distance_at(const distance_mesh *m, csg_vec3 at)
     return distance_of_point(m, p);
 }
 
-/* What is wrong; NULL: nothing. distance: of the meshes. */
-static const char *find_fault(const csgm_clear_pair *p, const distance_mesh *a,
-                              const distance_mesh *b, double distance)
-{
-    if (p->state == CSGM_CLEAR_INTERFERING)
-        return distance > 2 * E ? "called interfering"
-               : distance_at(a, p->inside) > E || distance_at(b, p->inside) > E
-                   ? "the point inside both is not"
-                   : NULL;
-    if (p->state == CSGM_CLEAR_TOUCHING && distance > T + 2 * E)
-        return "called touching";
-    if (p->gap.low > distance + 2 * E)
-        return "the lower bound is too large";
-    if (p->gap.high < distance - 2 * E)
-        return "the upper bound is too small";
-    if (p->gap.high < 1e9 &&
-        (distance_at(a, p->nearest[0]) > E || distance_at(b, p->nearest[1]) > E))
-        return "a nearest point is not of its part";
-    return NULL;
-}
-
-typedef struct tally {
-    uint32_t states[4], wrong, lost;
-} tally;
-
 /* In double, of the scene itself. */
 static double reference_at(const char *text, csg_vec3 at)
 {
@@ -211,15 +186,51 @@ static double reference_at(const char *text, csg_vec3 at)
 }
 
 /* A mesh is within E of the surface for certain, but the surface within E of the mesh only as
- * measured: a thin chip may be missing. Then the scene itself is asked. */
-static bool lost_something(const char *text, const csgm_clear_pair *p)
+ * measured: a thin chip may be missing, or a bulge be farther away. Then the scene itself is asked,
+ * part by part. */
+static double reference_of_part(const char *text, int part, csgm_vec3 at)
 {
     const char *b = strstr(text, "part(\"b\")");
     char first[TEXT];
     snprintf(first, sizeof first, "%.*s", (int)(b - text), text);
-    return p->state == CSGM_CLEAR_INTERFERING && reference_at(first, p->inside) > 0 &&
-           reference_at(b, p->inside) > 0;
+    return reference_at(part ? b : first, at);
 }
+
+static bool lost_something(const char *text, const csgm_clear_pair *p)
+{
+    return p->state == CSGM_CLEAR_INTERFERING && reference_of_part(text, 0, p->inside) > 0 &&
+           reference_of_part(text, 1, p->inside) > 0;
+}
+
+static bool is_of_part(const char *text, int part, const distance_mesh *mesh, csgm_vec3 at)
+{
+    return distance_at(mesh, at) <= E || reference_of_part(text, part, at) >= 0;
+}
+
+/* What is wrong; NULL: nothing. distance: of the meshes. */
+static const char *find_fault(const char *text, const csgm_clear_pair *p, const distance_mesh *a,
+                              const distance_mesh *b, double distance)
+{
+    if (p->state == CSGM_CLEAR_INTERFERING)
+        return distance > 2 * E ? "called interfering"
+               : distance_at(a, p->inside) > E || distance_at(b, p->inside) > E
+                   ? "the point inside both is not"
+                   : NULL;
+    if (p->state == CSGM_CLEAR_TOUCHING && distance > T + 2 * E)
+        return "called touching";
+    if (p->gap.low > distance + 2 * E)
+        return "the lower bound is too large";
+    if (p->gap.high < distance - 2 * E)
+        return "the upper bound is too small";
+    if (p->gap.high < 1e9 &&
+        (!is_of_part(text, 0, a, p->nearest[0]) || !is_of_part(text, 1, b, p->nearest[1])))
+        return "a nearest point is not of its part";
+    return NULL;
+}
+
+typedef struct tally {
+    uint32_t states[4], wrong, lost;
+} tally;
 
 static void try_pair(const solid *a, const solid *b, csg_random *r, tally *seen)
 {
@@ -248,7 +259,7 @@ static void try_pair(const solid *a, const solid *b, csg_random *r, tally *seen)
     options.part_count = 2;
     options.most_pairs = 1 << 17;
     csgm_clear_pair found = clear_pair(&options, text);
-    const char *fault = find_fault(&found, of_a, of_b, distance);
+    const char *fault = find_fault(text, &found, of_a, of_b, distance);
     bool is_lost = fault && lost_something(text, &found);
     seen->states[found.state]++;
     seen->lost += is_lost;
