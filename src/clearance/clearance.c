@@ -40,15 +40,20 @@ typedef struct pair {
     outcome last;         /* of it */
     double last_apart;    /* then they were so far apart; 0: that was not proven */
     step step;
-    csg_motion motion; /* where it is asked for */
-    bool moves_first;  /* of the first part; else of the second */
-    double apart;      /* > 0: known to be so far apart at this pose, and only the step is asked */
-    double between;    /* the least of what is proven of steps */
-    size_t poses;      /* at which something is known */
-    bool is_known;     /* told is of some pose */
-    csgm_clear_pair found; /* of this pose's search */
-    bool out_of_memory;
+    double between; /* the least of what is proven of steps */
+    size_t poses;   /* at which something is known */
+    bool is_known;  /* told is of some pose */
 } pair;
+
+/* A search of this pose. */
+typedef struct inquiry {
+    uint32_t pair;
+    bool moves_first;  /* the motion is the first part's; else the second one's */
+    csg_motion motion; /* where the step is asked for */
+    double apart;      /* > 0: known to be so far apart at this pose, and only the step is asked */
+    csgm_clear_pair found;
+    bool out_of_memory;
+} inquiry;
 
 struct csgm_clearances {
     csgm_context *context;
@@ -57,7 +62,7 @@ struct csgm_clearances {
     part *parts;
     pair *pairs;
     size_t part_count, part_room, pair_count, pair_room, poses;
-    uint32_t *search; /* pairs of this pose that boxes do not tell */
+    inquiry *search; /* what boxes do not tell of this pose */
     size_t search_count, search_room;
     double tolerance;
     csg_mesh_watch watch;
@@ -379,7 +384,7 @@ static void cover(pair *p, double apart)
 
 /* What is known of the step by motions and boxes. Of two motions, that of the one part seen from
  * the other and the other way round, the smaller one is taken: they are the same way. */
-static void begin_step(const csgm_clearances *c, pair *p)
+static void begin_step(const csgm_clearances *c, pair *p, inquiry *out)
 {
     const part *a = &c->parts[p->a], *b = &c->parts[p->b];
     double apart = box_distance(a->box, b->box), reach = a->reach + b->reach;
@@ -405,8 +410,8 @@ static void begin_step(const csgm_clearances *c, pair *p)
     csg_motion of_a = csg_motion_between(&a->back, &b->forth, reach);
     double most_a = most_of(&of_a, a);
     left = fmax(apart - most_a, box_distance(box_of_way(&of_a, a), b->box));
-    p->moves_first = most_a < most_b;
-    p->motion = p->moves_first ? of_a : of_b;
+    out->moves_first = most_a < most_b;
+    out->motion = out->moves_first ? of_a : of_b;
     p->step = STEP_ASKED;
     if (left > 0 && left >= least)
         cover(p, left);
@@ -441,9 +446,9 @@ static void count_pose(pair *p, outcome which)
     p->told.poses_open += which == OPEN;
 }
 
-static void take_found(csgm_clearances *c, pair *p)
+static void take_found(csgm_clearances *c, pair *p, const csgm_clear_pair *found)
 {
-    csgm_clear_pair *told = &p->told, *found = &p->found;
+    csgm_clear_pair *told = &p->told;
     double low = fmin(told->gap.low, found->gap.low);
     told->pairs += found->pairs;
     if (!p->is_known || is_worse(told, found)) {
@@ -471,8 +476,9 @@ static void take_found(csgm_clearances *c, pair *p)
 static bool search_one(void *user, uint32_t worker, size_t index)
 {
     csgm_clearances *c = user;
-    pair *p = &c->pairs[c->search[index]];
-    bool asks = p->step == STEP_ASKED, turned = asks && p->moves_first;
+    inquiry *q = &c->search[index];
+    const pair *p = &c->pairs[q->pair];
+    bool asks = p->step == STEP_ASKED, turned = asks && q->moves_first;
     csg_clear_task task = {.a = &c->parts[turned ? p->b : p->a].at,
                            .b = &c->parts[turned ? p->a : p->b].at,
                            .tolerance = c->tolerance,
@@ -481,15 +487,15 @@ static bool search_one(void *user, uint32_t worker, size_t index)
                            .min_gap = c->options.min_gap,
                            .enough_volume = p->told.volume.low,
                            .most_pairs = c->options.most_pairs,
-                           .motion = asks ? &p->motion : NULL,
-                           .apart = p->apart,
+                           .motion = asks ? &q->motion : NULL,
+                           .apart = q->apart,
                            .worker = worker,
                            .watch = &c->watch};
-    bool done = csg_clear_search(&task, &p->found, &p->out_of_memory);
+    bool done = csg_clear_search(&task, &q->found, &q->out_of_memory);
     if (turned) {
-        csgm_vec3 first = p->found.nearest[0];
-        p->found.nearest[0] = p->found.nearest[1];
-        p->found.nearest[1] = first;
+        csgm_vec3 first = q->found.nearest[0];
+        q->found.nearest[0] = q->found.nearest[1];
+        q->found.nearest[1] = first;
     }
     return done;
 }
@@ -557,10 +563,10 @@ static csgm_status plan(csgm_clearances *c, const csg_parts *parts)
         pair *p = &c->pairs[i];
         if (i % 64 == 0 && csg_mesh_should_stop(&c->watch))
             return csg_mesh_why_stopped(&c->watch);
-        p->apart = 0;
+        inquiry asked = {.pair = i, .found = {.state = CSGM_CLEAR_UNDECIDED, .gap = {0, INFINITY}}};
         if (!is_there(c, p))
             continue;
-        begin_step(c, p);
+        begin_step(c, p, &asked);
         bool is_told = ask_boxes(c, p);
         if (is_told && p->step != STEP_ASKED)
             continue;
@@ -570,20 +576,18 @@ static csgm_status plan(csgm_clearances *c, const csg_parts *parts)
         bool is_old =
             p->versions[0] == c->parts[p->a].version && p->versions[1] == c->parts[p->b].version;
         if (is_told)
-            p->apart = box_distance(c->parts[p->a].box, c->parts[p->b].box);
+            asked.apart = box_distance(c->parts[p->a].box, c->parts[p->b].box);
         if (status == CSGM_OK && is_old && !is_told) {
             count_pose(p, p->last);
-            p->apart = p->last_apart;
-            if (p->step != STEP_ASKED || !(p->apart > 0))
+            asked.apart = p->last_apart;
+            if (p->step != STEP_ASKED || !(asked.apart > 0))
                 continue;
         }
         if (status == CSGM_OK && !csg_memory_reserve(memory, (void **)&c->search, &c->search_room,
                                                      c->search_count + 1, sizeof *c->search))
             status = csg_context_no_memory(c->context);
-        if (status == CSGM_OK) {
-            c->search[c->search_count++] = i;
-            p->found = (csgm_clear_pair){.state = CSGM_CLEAR_UNDECIDED, .gap = {0, INFINITY}};
-        }
+        if (status == CSGM_OK)
+            c->search[c->search_count++] = asked;
     }
     return status;
 }
@@ -593,15 +597,16 @@ static csgm_status search_all(csgm_clearances *c)
     bool out_of_memory = false;
     bool done = csg_pool_run(c->context->pool, c->search_count, search_one, NULL, c);
     for (size_t i = 0; i < c->search_count; i++) {
-        pair *p = &c->pairs[c->search[i]];
-        if (p->step == STEP_ASKED && p->found.gap_between > 0 &&
-            p->found.gap_between >= c->options.min_gap)
-            cover(p, p->found.gap_between);
-        if (p->apart > 0)
-            p->told.pairs += p->found.pairs;
-        else if (done || !p->poses || outcome_of(c, &p->found) != OPEN)
-            take_found(c, p);
-        out_of_memory |= p->out_of_memory;
+        const inquiry *q = &c->search[i];
+        pair *p = &c->pairs[q->pair];
+        if (p->step == STEP_ASKED && q->found.gap_between > 0 &&
+            q->found.gap_between >= c->options.min_gap)
+            cover(p, q->found.gap_between);
+        if (q->apart > 0)
+            p->told.pairs += q->found.pairs;
+        else if (done || !p->poses || outcome_of(c, &q->found) != OPEN)
+            take_found(c, p, &q->found);
+        out_of_memory |= q->out_of_memory;
     }
     if (done)
         return CSGM_OK;
