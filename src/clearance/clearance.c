@@ -387,14 +387,16 @@ static void cover(pair *p, double apart)
 static void begin_step(const csgm_clearances *c, pair *p, inquiry *out)
 {
     const part *a = &c->parts[p->a], *b = &c->parts[p->b];
-    double apart = box_distance(a->box, b->box), reach = a->reach + b->reach;
     if (p->step == STEP_NONE || !a->has_motion || !b->has_motion)
         return;
-    if ((a->is_still && b->is_still) || apart >= INFINITY) {
+    if (a->is_still && b->is_still) {
         cover(p, INFINITY);
         return;
     }
-    if (!isfinite(reach))
+    double apart = box_distance(a->box, b->box), reach = a->reach + b->reach;
+    if (apart >= INFINITY)
+        cover(p, INFINITY);
+    if (apart >= INFINITY || !isfinite(reach))
         return;
     csg_motion of_b = csg_motion_between(&b->back, &a->forth, reach);
     double most_b = most_of(&of_b, b), least = c->options.min_gap;

@@ -115,6 +115,11 @@ class Clear(unittest.TestCase):
         grows = self.pairs('t = 0; part("a") sphere(1); part("b") translate([9, 0, 0]) sphere(1 + t);', "--over", "t=0:2")
         self.assertEqual(grows["a", "b"]["steps_not_covered"], 2)
         self.run_on(TWO, "--over", "t=0:0.25:1", "--between", "--min-gap", 0.9)
+        row = 't = 0; for (i = [0 : 7]) part(str("p", i)) translate([100 * i, i * t, 0]) sphere(%s);'
+        for radius, words in (("1", "between poses a gap of at least 9"), ("1 + t", "between poses steps of 28 of them are not covered")):
+            found = self.run_on(row % radius, "--over", "t=0:2").stdout.decode()
+            self.assertIn("28 other pairs: apart", found)
+            self.assertIn(words, found)
         self.run_on(TWO, "--over", "t=0:1", "--between", "--min-gap", 1.001, status=1)
 
     def test_refine(self):

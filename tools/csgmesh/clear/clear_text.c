@@ -132,12 +132,40 @@ static void print_pair(const cli_cleared *c, const csgm_clear_pair *p)
     }
 }
 
+/* Pairs that their boxes tell apart, where these are many. */
+typedef struct far_pairs {
+    size_t count, open; /* open: some of whose steps are not covered */
+    double least, between;
+    bool has_steps;
+} far_pairs;
+
+static void add_far(far_pairs *all, const csgm_clear_pair *p)
+{
+    all->count++;
+    all->open += p->steps_open > 0;
+    all->has_steps |= p->steps > 0;
+    all->least = fmin(all->least, p->gap.low);
+    all->between = fmin(all->between, p->gap_between);
+}
+
+static void print_far(const far_pairs *all)
+{
+    char least[CLI_INTERVAL_TEXT];
+    printf("  %zu other pairs: apart, at least %s, by their boxes\n", all->count,
+           cli_format_least(least, all->least, 6));
+    if (all->open)
+        printf("    between poses steps of %zu of them are not covered\n", all->open);
+    else if (all->has_steps)
+        printf("    between poses a gap of at least %s\n",
+               cli_format_least(least, all->between, 3));
+}
+
 void cli_clear_text(const cli_cleared *c)
 {
     const csgm_clear_pair *p;
     char first[CLI_OVER_TEXT], last[CLI_OVER_TEXT];
-    size_t far_count = 0, far_left = 0;
-    double least = INFINITY;
+    size_t far_count = 0;
+    far_pairs others = {.least = INFINITY, .between = INFINITY};
     printf("%s: ", c->path);
     if (c->over->name)
         printf("%zu poses, %s = %s .. %s\n", c->poses, c->over->name,
@@ -152,9 +180,8 @@ void cli_clear_text(const cli_cleared *c)
             print_pair(c, p);
             continue;
         }
-        far_left++;
-        least = fmin(least, p->gap.low);
+        add_far(&others, p);
     }
-    if (far_left)
-        printf("  %zu other pairs: apart, at least %.6g, by their boxes\n", far_left, least);
+    if (others.count)
+        print_far(&others);
 }
