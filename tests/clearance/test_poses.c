@@ -160,6 +160,8 @@ static void test_any_allocation_may_fail(void **state)
             status = csgm_clearances_create(context, NULL, &c);
         if (status == CSGM_OK)
             status = add_at(context, c, 2.2);
+        if (status == CSGM_OK)
+            status = add_at(context, c, 2.4); /* with the step */
         const csgm_clear_pair *p = c ? csgm_clearances_get(c, 0) : NULL;
         done = status == CSGM_OK;
         refused += !done;
@@ -168,6 +170,8 @@ static void test_any_allocation_may_fail(void **state)
             assert_true(p->gap.low <= 0.2 && p->gap.high >= 0.2);
             assert_int_not_equal(p->state, CSGM_CLEAR_INTERFERING);
             assert_true(done || p->state == CSGM_CLEAR_APART || p->poses_open == 1);
+            assert_true(p->steps_open <= p->steps && p->gap_between <= 0.2);
+            assert_true(!done || (p->steps == 1 && !p->steps_open && p->gap_between > 0.05));
         }
         csgm_clearances_destroy(c);
         csgm_context_destroy(context);
