@@ -9,7 +9,7 @@ import os
 import re
 import sys
 
-ORDER = ["base", "text", "shape", "outline", "scene", "solid", "lang", "field", "grid", "mesh", "io", "render", "diff", "measure", "clearance", "slice", "api"]
+ORDER = ["base", "text", "shape", "outline", "scene", "solid", "lang", "field", "grid", "mesh", "io", "render", "diff", "measure", "clearance", "walls", "slice", "api"]
 
 # The folders of a layer in their order; files beside them may include any of them and be included by any.
 PARTS = {
@@ -24,7 +24,7 @@ PARTS = {
 }
 
 # What customers include.
-PUBLIC = {"csgmesh/clearance.h", "csgmesh/csgmesh.h", "csgmesh/editing.h", "csgmesh/ranks.h", "csgmesh/reshaping.h", "csgmesh/slicing.h"}
+PUBLIC = {"csgmesh/clearance.h", "csgmesh/csgmesh.h", "csgmesh/editing.h", "csgmesh/fabrication.h", "csgmesh/ranks.h", "csgmesh/reshaping.h", "csgmesh/slicing.h"}
 
 # Made by the build.
 GENERATED = {"report_page.inc"}
@@ -167,7 +167,7 @@ def check_tools(root):
             if name in GENERATED or os.path.exists(os.path.join(program, name)):
                 continue
             if name.split("/")[0] in ORDER:
-                yield path, number, "tools/ includes csgmesh/csgmesh.h, clearance.h, editing.h, reshaping.h and slicing.h only"
+                yield path, number, "tools/ includes csgmesh/csgmesh.h, clearance.h, editing.h, fabrication.h, reshaping.h and slicing.h only"
             else:
                 yield path, number, f"no file '{name}' in the program's folder"
 

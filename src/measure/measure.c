@@ -19,17 +19,17 @@
 /* A share of all cubes is for the bounds, which take few where they can be found at all. */
 enum { SHARE_FOR_EXTENTS = 8, SHARE_FOR_AREA = 8 };
 
-static csgm_status refuse_empty(csgm_context *context)
+csgm_status csg_measure_refuse_empty(csgm_context *context)
 {
     csg_diag_plain(&context->diags, CSG_DIAG_NOTHING_TO_MEASURE, NULL, NULL,
                    "the solid is empty: there is nothing to measure");
     return CSGM_ERR_SCENE;
 }
 
-static csgm_status check_bounds(csgm_context *context, csg_box bounds)
+csgm_status csg_measure_check_bounds(csgm_context *context, csg_box bounds)
 {
     if (csg_box_is_empty(bounds))
-        return refuse_empty(context);
+        return csg_measure_refuse_empty(context);
     if (csg_box_is_finite(bounds))
         return CSGM_OK;
     csg_diag_plain(&context->diags, CSG_DIAG_UNBOUNDED, NULL, "intersect the solid with a cube",
@@ -94,7 +94,8 @@ static csgm_status measure(csg_measure_walk *walk, const csgm_measure_options *o
         status = take_area(walk, options, out);
     bool is_close = integrals.high[0] - integrals.low[0] <= options->tolerance * integrals.high[0];
     out->is_reached = status == CSGM_OK && extents.is_close && is_close;
-    return status == CSGM_OK && !(integrals.high[0] > 0) ? refuse_empty(walk->context) : status;
+    return status == CSGM_OK && !(integrals.high[0] > 0) ? csg_measure_refuse_empty(walk->context)
+                                                         : status;
 }
 
 csgm_status csg_measure_field(csgm_context *context, const csgm_field *field,
@@ -103,7 +104,7 @@ csgm_status csg_measure_field(csgm_context *context, const csgm_field *field,
     CSG_ZONE(context, "measure");
     csg_mesh_watch watch = {0};
     csg_measure_walk walk;
-    csgm_status status = check_bounds(context, field->bounds);
+    csgm_status status = csg_measure_check_bounds(context, field->bounds);
     if (status != CSGM_OK)
         return status;
     csg_mesh_watch_begin(&watch, context, &options->monitor, 0);
@@ -155,7 +156,7 @@ csgm_status csg_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
     double low[CSG_INTEGRALS], high[CSG_INTEGRALS];
     csgm_status status = csg_mesh_inspect(context, mesh, 0, &check);
     if (status == CSGM_OK && !mesh->triangle_count)
-        return refuse_empty(context);
+        return csg_measure_refuse_empty(context);
     if (status == CSGM_OK)
         status = check_closed(context, &check);
     if (status != CSGM_OK)

@@ -254,6 +254,79 @@ class Measure(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("not closed", result.stderr)
 
+    def test_oriented_box(self):
+        scene = "rotate([20, 30, 40]) cube([10, 20, 30], center = true);\n"
+        box = self.measure(scene, "--to", 1e-3, "--box")["oriented_box"]
+        for edge, length in zip(box["edges"], (30, 20, 10)):
+            self.assertLess(abs(edge["length"][1] - length), 0.1)
+            self.assertGreaterEqual(edge["length"][1], length * (1 - 1e-6))
+            self.assertLessEqual(edge["largest"][1] - edge["least"][0], edge["length"][1] + 1e-9)
+        self.assertLess(abs(box["edges"][2]["axis"][2] + 0.5), 0.01)
+        self.check(scene, "box_volume < 6100 && box_3 < 10.1", status=0)
+        self.check(scene, "box_1 < 29", status=1)
+        text = self.run_text(scene, "--to", 1e-3, "--box").stdout.decode()
+        self.assertIn("box edge 1", text)
+        self.assertNotIn("oriented_box", self.measure("cube(1);", "--to", 1e-2))
+        parts = 'part("a") cube(1);\npart("b") rotate([0, 0, 30]) translate([5, 0, 0]) cube([1, 2, 3]);\n'
+        found = self.measure(parts, "--to", 1e-3, "--box", "--each-part")["parts"]
+        self.assertLess(abs(found[1]["oriented_box"]["volume"][1] - 6), 0.1)
+
+    def test_overhang_and_draft_of_meshes(self):
+        path = write(self.folder, "scene.txt", "cube([1, 2, 3]); translate([0, 0, 3]) cube([3, 2, 1]);\n")
+        mesh = os.path.join(self.folder, "mesh.stl")
+        self.assertEqual(cli.run(path, "-o", mesh).returncode, 0)
+        faces = json.loads(cli.run("measure", mesh, "--overhang", 45, "--json").stdout)["faces"]
+        self.holds(faces["overhang"], 2 * 2 + 2)
+        self.holds(faces["resting"], 2)
+        self.holds(faces["steep"], 2 * (3 + 2) * 3 - 4 * 3 + 2 * (3 + 2))
+        turned = json.loads(cli.run("measure", mesh, "--draft", 2, "--upward", "0,0,-1", "--json").stdout)["faces"]
+        self.holds(turned["resting"], 6)
+        self.assertEqual(cli.run("measure", mesh, "--check", "overhang - resting < 3.9").returncode, 1)
+        for options, said in ((("--overhang", 90), "below 90"), (("--upward", "0,0,0"), "no direction"),
+                              (("--upward", "0,0,1", "--upward", "1,0,0"), "one direction")):
+            wrong = cli.run("measure", mesh, *options)
+            self.assertEqual(wrong.returncode, 2)
+            self.assertIn(said, wrong.stderr)
+        of_scene = cli.run("measure", path, "--overhang", 45)
+        self.assertEqual(of_scene.returncode, 2)
+        self.assertIn("of meshes, not of scenes", of_scene.stderr)
+        self.check("cube(1);", "overhang < 1", status=2)
+
+    def test_walls_and_gaps(self):
+        box = "difference() { cube([10, 20, 30]); translate([1, 1, 2]) cube([8, 18, 40]); }\n"
+        found = self.measure(box, "--to", 1e-2, "--walls")
+        for name, length in (("wall", 1), ("gap", 8)):
+            span = found[name]
+            self.holds(span["length"], length)
+            self.assertLess(span["length"][1] - span["length"][0], 0.5)
+            self.assertAlmostEqual(math.dist(*span["at"]), span["length"][1], 6)
+            self.assertEqual((span["none"], span["overlooked"]), (False, 0))
+        self.check(box, "wall > 0.6 && gap > 7", status=0)
+        failed = self.check(box, "wall > 1.2 && gap > 7", status=1)
+        self.assertIn("this fails: wall > 1.2\n", failed.stderr)
+        self.check("cube(10);", "gap > 1e9", status=0)  # there is none
+        text = self.run_text(box, "--to", 1e-2, "--walls").stdout.decode()
+        self.assertRegex(text, r"(?m)^  wall +\S+ \.\. \S+ from \S+ to \S+$")
+        self.assertIn("gap          none", self.run_text("cube(10);", "--to", 1e-2, "--walls").stdout.decode())
+        self.assertNotIn("wall", self.measure(box, "--to", 1e-2))
+        vague = self.run_text("cylinder(h = 12, r1 = 5, r2 = 0);\n", "--to", 0.1, "--finest", 1, "--check", "wall > 1")
+        self.assertEqual(vague.returncode, 0, vague.stderr)
+        self.assertIn("not looked for", vague.stderr)
+        path = write(self.folder, "scene.txt", box)
+        mesh = os.path.join(self.folder, "mesh.stl")
+        self.assertEqual(cli.run(path, "-o", mesh).returncode, 0)
+        for wrong, said in ((("measure", mesh, "--walls"), "of scenes, not of meshes"),
+                            (("measure", path, "--wall-angle", 41), "at most 40")):
+            result = cli.run(*wrong)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(said, result.stderr)
+
+    def test_a_limit_leaves_what_is_proven_of_walls(self):
+        path = write(self.folder, "scene.txt", "torus(8, 2);\n")
+        short = cli.run("measure", path, "--to", 1e-2, "--walls", "--json", "--timeout", 0.3)
+        self.assertIn(short.returncode, (0, 2), short.stderr)
+        self.holds(json.loads(short.stdout)["volume"], CLOSED["torus(8, 2);"][0])
+
     def test_refused(self):
         for scene, said in (("plane([0, 0, 1]);", "infinity"), ("union() {}", "empty")):
             path = write(self.folder, "scene.txt", scene)

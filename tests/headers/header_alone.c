@@ -4,6 +4,7 @@
 #include <csgmesh/clearance.h>
 #include <csgmesh/csgmesh.h>
 #include <csgmesh/editing.h>
+#include <csgmesh/fabrication.h>
 #include <csgmesh/ranks.h>
 #include <csgmesh/reshaping.h>
 #include <csgmesh/slicing.h>

@@ -45,6 +45,29 @@ def test_solids_scenes_and_meshes(folder):
         csgmesh.measure(MUG, timeout=1e-6)
 
 
+def test_what_a_workshop_asks(folder):
+    solid = csgmesh.cube([10, 20, 30]).rotate([20, 30, 40])
+    for source in (solid, solid.mesh()):
+        box = csgmesh.oriented_box(source, tolerance=1e-3)
+        assert [round(high) for _, high in box.edges] == [30, 20, 10] and 5900 < box.volume[0] <= box.volume[1] < 6100
+        assert all(math.hypot(*axis) == pytest.approx(1) for axis in box.axes) and len(box.ends) == 6
+    shell = "difference() { cube([10, 20, 30]); translate([1, 1, 2]) cube([8, 18, 40]); }"
+    found = csgmesh.walls(shell, tolerance=1e-2)
+    assert found.wall.length[0] <= 1 <= found.wall.length[1] and found.gap.length[0] <= 8 <= found.gap.length[1]
+    assert math.dist(*found.wall.at) == pytest.approx(found.wall.length[1]) and found.wall.overlooked == 0
+    none = csgmesh.walls(csgmesh.cube(10), tolerance=1e-2).gap
+    assert none.length == (math.inf, math.inf) and none.at is None
+    faces = csgmesh.faces(csgmesh.cube([1, 2, 3]).mesh(), overhang_deg=30)
+    assert faces.overhang[0] == pytest.approx(2) and faces.resting == faces.overhang and faces.steep[0] == pytest.approx(18)
+    turned = csgmesh.faces(csgmesh.cube([1, 2, 3]).mesh(), up=[1, 0, 0])
+    assert turned.overhang[0] == pytest.approx(6)
+    for mistake in ({"angle_deg": 41}, {"part": "c"}):
+        with pytest.raises(ValueError):
+            csgmesh.walls("cube(1);", **mistake)
+    with pytest.raises(TypeError, match="did you mean 'draft_deg'"):
+        csgmesh.faces(csgmesh.cube(1).mesh(), draft_degs=1)
+
+
 def test_clearances(folder):
     (folder / "boxes.txt").write_text("t = 0;\n" + BOXES)
     poses = [{"t": t} for t in (9, 2.5, 1.5, 4)]

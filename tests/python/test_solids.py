@@ -126,13 +126,14 @@ def test_every_function_of_the_language():
 
 def test_options_are_those_of_the_header():
     """Each member of an options struct is an option of the function, and a name for type checkers."""
-    header = "".join((ROOT / "include" / "csgmesh" / name).read_text() for name in ("csgmesh.h", "slicing.h"))
+    header = "".join((ROOT / "include" / "csgmesh" / name).read_text() for name in ("csgmesh.h", "slicing.h", "fabrication.h"))
     header = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
     renamed = {"scene": {"defines": "define", "define_count": None, "include_dirs": "include", "include_dir_count": None},
                "render": {"camera": None, "slice_axis": "slice", "slice_at": None}, "diff": {"ignored": "ignore", "scene_a": None, "scene_b": None},
-               "mesh": {}, "write": {"metadata_count": None, "level_count": None}, "slice": {"height": "layer", "most_height": None}}
+               "mesh": {}, "write": {"metadata_count": None, "level_count": None}, "slice": {"height": "layer", "most_height": None}, "wall": {}, "face": {}}
     more = {"render": {"view", "eye", "target", "up", "projection", "fov", "view_height", "zoom"}}
-    typed = {"scene": "SceneOptions", "mesh": "BuildOptions", "write": "FileOptions", "render": "PictureOptions", "diff": "DiffOptions", "slice": "SliceOptions"}
+    typed = {"scene": "SceneOptions", "mesh": "BuildOptions", "write": "FileOptions", "render": "PictureOptions", "diff": "DiffOptions", "slice": "SliceOptions",
+             "wall": "WallOptions", "face": "FaceOptions"}
     from csgmesh import _core, _types
     for kind, renaming in renamed.items():
         body = re.search(rf"typedef struct csgm_{kind}_options \{{(.*?)\}} csgm_{kind}_options;", header, re.S).group(1)
@@ -142,7 +143,7 @@ def test_options_are_those_of_the_header():
         assert set(_core.option_names[kind]) == wanted, kind
         wanted -= {"only_check"}  # check() sets it
         own = set(getattr(_types, typed[kind]).__annotations__) - set(_types.RunOptions.__annotations__)
-        own -= set(_types.SceneOptions.__annotations__) if kind == "slice" else set()
+        own -= set(_types.SceneOptions.__annotations__) if kind in ("slice", "wall") else set()  # they take a scene's options, too
         assert own - {"field", "mesh"} == wanted, kind
     assert set(_core.option_names["run"]) | {"progress", "echo"} == set(_types.RunOptions.__annotations__)
 

@@ -3,6 +3,7 @@
  * all and of each part.
  * What is proven when a limit or Ctrl-C ends the work is printed too.
  */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,34 @@ static csgm_measure_options measure_options(cli_app *app)
     return options;
 }
 
+static csgm_face_options face_options(cli_app *app)
+{
+    const cli_options *o = app->options;
+    csgm_face_options options = csgm_face_options_default();
+    if (o->given[CLI_OPTION_measure_overhang])
+        options.overhang_deg = o->measure_overhang;
+    if (o->given[CLI_OPTION_measure_draft])
+        options.draft_deg = o->measure_draft;
+    if (o->measure_upward.count)
+        options.up = o->measure_upward.items[0];
+    return options;
+}
+
+static csgm_wall_options wall_options(cli_app *app)
+{
+    const cli_options *o = app->options;
+    csgm_wall_options options = csgm_wall_options_default();
+    if (o->given[CLI_OPTION_measure_to])
+        options.tolerance = o->measure_to;
+    if (o->given[CLI_OPTION_measure_finest])
+        options.finest = o->measure_finest;
+    if (o->given[CLI_OPTION_measure_wall_angle])
+        options.angle_deg = o->measure_wall_angle;
+    options.monitor = (csgm_monitor){
+        .progress = cli_console_progress, .cancelled = ask_interrupted, .user = &app->console};
+    return options;
+}
+
 static int no_memory(cli_app *app)
 {
     return cli_usage_error(app, NULL, "out of memory");
@@ -42,11 +71,11 @@ static int no_memory(cli_app *app)
 /* ---- what is measured --------------------------------------------------------------------------
  */
 
-/* A scene or a mesh, one of the two, and the names of its parts. */
+/* What is measured, how, and the names of its parts. */
 typedef struct subject {
     const char *path;
-    const csgm_field *field; /* NULL: it is a mesh */
-    csgm_mesh_view mesh;
+    cli_measured_solid solid;
+    unsigned groups; /* of figures */
     const char **names;
     size_t count;
 } subject;
@@ -54,22 +83,22 @@ typedef struct subject {
 /* False: out of memory. */
 static bool find_names(subject *s)
 {
-    if (s->field) {
-        s->names = cli_part_names(s->field, &s->count);
+    if (s->solid.field) {
+        s->names = cli_part_names(s->solid.field, &s->count);
         return s->names != NULL;
     }
-    s->names = calloc((size_t)s->mesh.part_count + 1, sizeof *s->names);
-    for (uint64_t i = 0; s->names && i < s->mesh.part_count; i++)
-        if (s->mesh.parts[i].name)
-            s->names[s->count++] = s->mesh.parts[i].name;
+    s->names = calloc((size_t)s->solid.mesh.part_count + 1, sizeof *s->names);
+    for (uint64_t i = 0; s->names && i < s->solid.mesh.part_count; i++)
+        if (s->solid.mesh.parts[i].name)
+            s->names[s->count++] = s->solid.mesh.parts[i].name;
     return s->names != NULL;
 }
 
 static csgm_status measure(cli_app *app, const subject *s, const csgm_measure_options *options,
-                           csgm_measures *out)
+                           cli_figures *out)
 {
-    return s->field ? csgm_measure_field(app->context, s->field, options, out)
-                    : csgm_measure_mesh(app->context, &s->mesh, options, out);
+    const cli_figure_options all = {*options, face_options(app), wall_options(app)};
+    return cli_figures_measure(app->context, &s->solid, &all, s->groups, out);
 }
 
 static bool is_stopped(csgm_status status)
@@ -85,8 +114,7 @@ static csgm_status measure_parts(cli_app *app, const subject *s, csgm_measure_op
     for (*count = 0; *count < s->count && status == CSGM_OK; ++*count) {
         cli_measured_part *part = &parts[*count];
         options.part = part->name = s->names[*count];
-        part->measures = csgm_measures_default();
-        status = measure(app, s, &options, &part->measures);
+        status = measure(app, s, &options, &part->figures);
         if (status != CSGM_OK && !is_stopped(status)) {
             cli_console_say(&app->console, CSGM_ERROR, NULL,
                             "%s: so part \"%.200s\" has no measures", s->path, part->name);
@@ -129,22 +157,35 @@ static void say_how_far(cli_app *app, const cli_measured *measured, csgm_status 
                         measured->to);
 }
 
+/* What a check on walls or gaps does not speak of. */
+static void say_what_is_overlooked(cli_app *app, const cli_measured *measured)
+{
+    const csgm_walls *walls = &measured->figures->walls;
+    double most = fmax(walls->wall.overlooked, walls->gap.overlooked);
+    if (measured->checks.count && most > 0)
+        cli_console_say(
+            &app->console, CSGM_WARNING, "a smaller --finest looks closer",
+            "%s: walls or gaps below %g were not looked for where normals are not known",
+            measured->path, most);
+}
+
 /* status: of the measuring; what is proven is printed after a limit, too. What is checked decides
  * about the exit status: what is proven by then is proven. */
 static int print(cli_app *app, cli_measured *measured, csgm_status status)
 {
     const cli_options *o = app->options;
-    bool is_reached = measured->measures->is_reached;
+    bool is_reached = cli_figures_are_reached(measured->figures);
     for (size_t i = 0; i < measured->part_count; i++)
-        is_reached = is_reached && measured->parts[i].measures.is_reached;
+        is_reached = is_reached && cli_figures_are_reached(&measured->parts[i].figures);
     cli_console_end_progress(&app->console);
     if (status != CSGM_OK && !is_stopped(status))
         return cli_exit_status(status);
     say_how_far(app, measured, status, is_reached);
-    if (!cli_checks_decide(&measured->checks, &o->measure_checks, measured->measures))
+    if (!cli_checks_decide(&measured->checks, &o->measure_checks, measured->figures))
         return no_memory(app);
     if (!o->measure_junit || strcmp(o->measure_junit, "-") != 0)
         (o->json ? cli_measure_json : cli_measure_text)(measured);
+    say_what_is_overlooked(app, measured);
     int result = status != CSGM_OK || !is_reached ? CLI_TROUBLE : CLI_DONE;
     if (measured->checks.count)
         result = report_checks(app, measured);
@@ -155,15 +196,15 @@ static int print(cli_app *app, cli_measured *measured, csgm_status status)
 
 static int measure_and_print(cli_app *app, const subject *s, const csgm_measure_options *options)
 {
-    csgm_measures measures = csgm_measures_default();
+    cli_figures figures;
     cli_measured measured = {.path = s->path,
                              .part = options->part,
-                             .is_mesh = !s->field,
-                             .measures = &measures,
+                             .is_mesh = !s->solid.field,
+                             .figures = &figures,
                              .density = options->density,
                              .to = options->tolerance};
     cli_measured_part *parts = NULL;
-    csgm_status status = measure(app, s, options, &measures);
+    csgm_status status = measure(app, s, options, &figures);
     if (status == CSGM_OK && app->options->measure_each_part) {
         parts = calloc(s->count + 1, sizeof *parts);
         if (!parts)
@@ -191,31 +232,68 @@ static int measure_subject(cli_app *app, subject *s)
     return status;
 }
 
-static int measure_mesh(cli_app *app, const char *path, csgm_format format)
+static int measure_mesh(cli_app *app, const char *path, csgm_format format, unsigned groups)
 {
     csgm_mesh *mesh = NULL;
     int status = cli_exit_status(csgm_mesh_read(app->context, path, format, &mesh));
     if (status == CLI_DONE) {
-        subject s = {.path = path, .mesh = csgm_mesh_get_view(mesh)};
+        subject s = {.path = path, .solid.mesh = csgm_mesh_get_view(mesh), .groups = groups};
         status = measure_subject(app, &s);
     }
     csgm_mesh_destroy(mesh);
     return status;
 }
 
-static int measure_scene(cli_app *app, const char *path)
+static int measure_scene(cli_app *app, const char *path, unsigned groups)
 {
     cli_work work = {0};
     int status = cli_work_load(app, &work, path);
     if (status == CLI_DONE)
         status = cli_exit_status(csgm_field_compile(app->context, work.scene, &work.field));
     if (status == CLI_DONE) {
-        subject s = {.path = path, .field = work.field};
+        subject s = {.path = path, .solid.field = work.field, .groups = groups};
         cli_interrupt_ask_first();
         status = measure_subject(app, &s);
     }
     cli_work_release(&work);
     return status;
+}
+
+static bool asks_faces(const cli_app *app)
+{
+    const bool *given = app->options->given;
+    return given[CLI_OPTION_measure_overhang] || given[CLI_OPTION_measure_draft] ||
+           given[CLI_OPTION_measure_upward];
+}
+
+/* Angles and a direction that make sense. */
+static int read_faces(cli_app *app, unsigned *groups)
+{
+    const csgm_face_options faces = face_options(app);
+    if (!(faces.overhang_deg < 90 && faces.draft_deg < 90))
+        return cli_usage_error(app, NULL, "--overhang and --draft are angles below 90 degrees");
+    if (app->options->measure_upward.count > 1)
+        return cli_usage_error(app, NULL, "--upward is one direction");
+    if (faces.up.x == 0 && faces.up.y == 0 && faces.up.z == 0)
+        return cli_usage_error(app, NULL, "--upward 0,0,0 is no direction");
+    *groups |= asks_faces(app) ? CLI_FIGURES_FACES : 0;
+    return CLI_DONE;
+}
+
+static bool asks_walls(const cli_app *app)
+{
+    const bool *given = app->options->given;
+    return given[CLI_OPTION_measure_walls] || given[CLI_OPTION_measure_finest] ||
+           given[CLI_OPTION_measure_wall_angle];
+}
+
+static int read_walls(cli_app *app, unsigned *groups)
+{
+    static const double MOST_DEG = 40;
+    if (!(wall_options(app).angle_deg <= MOST_DEG))
+        return cli_usage_error(app, NULL, "--wall-angle is at most %g degrees", MOST_DEG);
+    *groups |= asks_walls(app) ? CLI_FIGURES_WALLS : 0;
+    return CLI_DONE;
 }
 
 int cli_cmd_measure(cli_app *app)
@@ -233,7 +311,12 @@ int cli_cmd_measure(cli_app *app)
     }
     if (app->options->measure_each_part && app->options->part)
         return cli_usage_error(app, NULL, "--part measures one part, --each-part all: give one");
-    int status = cli_checks_read(app, &app->options->measure_checks);
+    unsigned groups = app->options->measure_box ? CLI_FIGURES_BOX : 0;
+    int status = read_walls(app, &groups);
+    if (status == CLI_DONE)
+        status = read_faces(app, &groups);
+    if (status == CLI_DONE)
+        status = cli_checks_read(app, &app->options->measure_checks, &groups);
     if (status == CLI_DONE && app->options->measure_junit && !app->options->measure_checks.count)
         return cli_usage_error(app, "as --check 'volume < 1000'", "--junit needs a --check");
     if (status == CLI_DONE)
@@ -242,6 +325,12 @@ int cli_cmd_measure(cli_app *app)
         return status;
     const char *path = operands->items[0];
     bool is_mesh = asked != CSGM_FORMAT_AUTO || cli_path_is_mesh(path);
-    status = is_mesh ? measure_mesh(app, path, asked) : measure_scene(app, path);
+    if (!is_mesh && asks_faces(app))
+        return cli_usage_error(app, "csgmesh SCENE -o mesh.stl makes one",
+                               "--overhang, --draft and --upward are of meshes, not of scenes");
+    if (is_mesh && asks_walls(app))
+        return cli_usage_error(app, "import(\"part.stl\"); is a scene",
+                               "--walls, --finest and --wall-angle are of scenes, not of meshes");
+    status = is_mesh ? measure_mesh(app, path, asked, groups) : measure_scene(app, path, groups);
     return cli_finish_stdout(app, status);
 }

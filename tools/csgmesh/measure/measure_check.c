@@ -10,34 +10,43 @@
 
 #include "core/options.h"
 
-/* What conditions call them, and where they stand in csgm_measures. */
+/* What conditions call them, where they stand in cli_figures, and of which group they are. */
 #define EACH_MEASURE(M)                                                                            \
-    M(volume, volume)                                                                              \
-    M(mass, mass)                                                                                  \
-    M(centroid_x, centroid[0])                                                                     \
-    M(centroid_y, centroid[1])                                                                     \
-    M(centroid_z, centroid[2])                                                                     \
-    M(inertia_xx, inertia[0])                                                                      \
-    M(inertia_yy, inertia[1])                                                                      \
-    M(inertia_zz, inertia[2])                                                                      \
-    M(inertia_xy, inertia[3])                                                                      \
-    M(inertia_xz, inertia[4])                                                                      \
-    M(inertia_yz, inertia[5])                                                                      \
-    M(moment_1, moments[0])                                                                        \
-    M(moment_2, moments[1])                                                                        \
-    M(moment_3, moments[2])                                                                        \
-    M(area, area)                                                                                  \
-    M(min_x, bounds[0])                                                                            \
-    M(min_y, bounds[1])                                                                            \
-    M(min_z, bounds[2])                                                                            \
-    M(max_x, bounds[3])                                                                            \
-    M(max_y, bounds[4])                                                                            \
-    M(max_z, bounds[5])
+    M(volume, measures.volume, 0)                                                                  \
+    M(mass, measures.mass, 0)                                                                      \
+    M(centroid_x, measures.centroid[0], 0)                                                         \
+    M(centroid_y, measures.centroid[1], 0)                                                         \
+    M(centroid_z, measures.centroid[2], 0)                                                         \
+    M(inertia_xx, measures.inertia[0], 0)                                                          \
+    M(inertia_yy, measures.inertia[1], 0)                                                          \
+    M(inertia_zz, measures.inertia[2], 0)                                                          \
+    M(inertia_xy, measures.inertia[3], 0)                                                          \
+    M(inertia_xz, measures.inertia[4], 0)                                                          \
+    M(inertia_yz, measures.inertia[5], 0)                                                          \
+    M(moment_1, measures.moments[0], 0)                                                            \
+    M(moment_2, measures.moments[1], 0)                                                            \
+    M(moment_3, measures.moments[2], 0)                                                            \
+    M(area, measures.area, 0)                                                                      \
+    M(min_x, measures.bounds[0], 0)                                                                \
+    M(min_y, measures.bounds[1], 0)                                                                \
+    M(min_z, measures.bounds[2], 0)                                                                \
+    M(max_x, measures.bounds[3], 0)                                                                \
+    M(max_y, measures.bounds[4], 0)                                                                \
+    M(max_z, measures.bounds[5], 0)                                                                \
+    M(box_volume, box.volume, CLI_FIGURES_BOX)                                                     \
+    M(box_1, box.edges[0], CLI_FIGURES_BOX)                                                        \
+    M(box_2, box.edges[1], CLI_FIGURES_BOX)                                                        \
+    M(box_3, box.edges[2], CLI_FIGURES_BOX)                                                        \
+    M(overhang, faces.overhang, CLI_FIGURES_FACES)                                                 \
+    M(resting, faces.resting, CLI_FIGURES_FACES)                                                   \
+    M(steep, faces.steep, CLI_FIGURES_FACES)                                                       \
+    M(wall, walls.wall.length, CLI_FIGURES_WALLS)                                                  \
+    M(gap, walls.gap.length, CLI_FIGURES_WALLS)
 
 static const char *const sizes[] = {"size_x", "size_y", "size_z"};
 
 static const char *const names[] = {
-#define NAME(name, field) #name,
+#define NAME(name, field, group) #name,
     EACH_MEASURE(NAME)
 #undef NAME
         "size_x",
@@ -52,8 +61,9 @@ typedef struct meaning {
 
 typedef struct reader {
     const char *text, *at;
-    const csgm_measures *measures; /* NULL: nothing is known */
-    const char *fault, *hint;      /* the first mistake, and at: its place */
+    const cli_figures *figures; /* NULL: nothing is known */
+    unsigned groups;            /* of what is named */
+    const char *fault, *hint;   /* the first mistake, and at: its place */
     int depth;
     cli_checks *out; /* NULL: none is kept */
     bool out_of_memory;
@@ -139,18 +149,20 @@ static cli_truth truth_of(reader *r, const char *at, meaning m)
     return m.truth;
 }
 
-static bool find_measure(const csgm_measures *m, const char *name, csgm_interval *out)
+static bool find_measure(const cli_figures *f, const char *name, csgm_interval *out,
+                         unsigned *groups)
 {
-#define FIND(its_name, field)                                                                      \
+#define FIND(its_name, field, group)                                                               \
     if (strcmp(name, #its_name) == 0) {                                                            \
-        *out = m->field;                                                                           \
+        *out = f->field;                                                                           \
+        *groups |= group;                                                                          \
         return true;                                                                               \
     }
     EACH_MEASURE(FIND)
 #undef FIND
     for (int axis = 0; axis < 3; axis++)
         if (strcmp(name, sizes[axis]) == 0) {
-            *out = difference(m->bounds[axis + 3], m->bounds[axis]);
+            *out = difference(f->measures.bounds[axis + 3], f->measures.bounds[axis]);
             return true;
         }
     return false;
@@ -162,21 +174,21 @@ static meaning read_name(reader *r)
     enum { LONGEST = 40 };
     const char *at = r->at;
     size_t length = strspn(at, LETTERS);
-    csgm_measures unknown = csgm_measures_default();
+    const cli_figures unknown = cli_figures_unknown();
     char name[LONGEST];
     meaning m = {.number = {-INFINITY, INFINITY}};
     if (length >= LONGEST)
         return fail(r, at, "no measure has a name as long as that", NULL);
     memcpy(name, at, length);
     name[length] = '\0';
-    if (!find_measure(r->measures ? r->measures : &unknown, name, &m.number)) {
+    if (!find_measure(r->figures ? r->figures : &unknown, name, &m.number, &r->groups)) {
         const char *near = cli_nearest(name, names);
         return fail(r, at, "no measure has that name",
                     near ? near
                          : "volume, mass, area, centroid_x, inertia_xx, inertia_xy, moment_1, "
-                           "min_x, max_x, size_x");
+                           "min_x, max_x, size_x, box_1, wall, gap, overhang");
     }
-    if (!r->measures)
+    if (!r->figures)
         m.number = (csgm_interval){-INFINITY, INFINITY};
     r->at += length;
     return m;
@@ -369,11 +381,12 @@ static void read_condition(reader *r)
         fail(r, r->at, "the condition should end here", NULL);
 }
 
-int cli_checks_read(cli_app *app, const cli_list *texts)
+int cli_checks_read(cli_app *app, const cli_list *texts, unsigned *groups)
 {
     for (size_t i = 0; i < texts->count; i++) {
         reader r = {.text = texts->items[i], .at = texts->items[i]};
         read_condition(&r);
+        *groups |= r.groups;
         if (!r.fault)
             continue;
         int column = (int)(r.at - r.text);
@@ -384,11 +397,11 @@ int cli_checks_read(cli_app *app, const cli_list *texts)
     return CLI_DONE;
 }
 
-bool cli_checks_decide(cli_checks *checks, const cli_list *texts, const csgm_measures *measures)
+bool cli_checks_decide(cli_checks *checks, const cli_list *texts, const cli_figures *figures)
 {
     for (size_t i = 0; i < texts->count; i++) {
         reader r = {
-            .text = texts->items[i], .at = texts->items[i], .measures = measures, .out = checks};
+            .text = texts->items[i], .at = texts->items[i], .figures = figures, .out = checks};
         read_condition(&r);
         if (r.out_of_memory)
             return false;

@@ -10,6 +10,7 @@
 #define CLI_MEASURE_CHECK_H
 
 #include "core/cli.h"
+#include "measure/measure_figures.h"
 
 typedef enum cli_truth { CLI_FAILS, CLI_UNDECIDED, CLI_HOLDS } cli_truth;
 
@@ -25,11 +26,11 @@ typedef struct cli_checks {
 } cli_checks;
 
 /* Reads conditions and says what is wrong with the first that is none, with its place. CLI_DONE or
- * CLI_TROUBLE. */
-int cli_checks_read(cli_app *app, const cli_list *texts);
-/* Adds all conditions, decided by these measures. They have been read before. False: out of memory.
+ * CLI_TROUBLE. *groups: of figures that they name are added. */
+int cli_checks_read(cli_app *app, const cli_list *texts, unsigned *groups);
+/* Adds all conditions, decided by these figures. They have been read before. False: out of memory.
  */
-bool cli_checks_decide(cli_checks *checks, const cli_list *texts, const csgm_measures *measures);
+bool cli_checks_decide(cli_checks *checks, const cli_list *texts, const cli_figures *figures);
 void cli_checks_release(cli_checks *checks);
 /* "holds", "fails" or "undecided". */
 const char *cli_truth_name(cli_truth truth);

@@ -22,6 +22,15 @@ static void put_intervals(cli_json *json, const char *key, const char *const *na
     cli_json_end(json, '}');
 }
 
+static void put_vector(cli_json *json, const char *key, csgm_vec3 v)
+{
+    const double at[3] = {v.x, v.y, v.z};
+    cli_json_open(json, key, '[');
+    for (int k = 0; k < 3; k++)
+        cli_json_number(json, NULL, at[k]);
+    cli_json_end(json, ']');
+}
+
 static void put_checks(cli_json *json, const cli_checks *checks)
 {
     cli_json_open(json, "checks", '[');
@@ -38,25 +47,67 @@ static void put_principal(cli_json *json, const csgm_measures *m)
 {
     cli_json_open(json, "principal", '[');
     for (int n = 0; n < 3; n++) {
-        const double axis[3] = {m->axes[n].x, m->axes[n].y, m->axes[n].z};
         cli_json_open(json, NULL, '{');
         put_interval(json, "moment", m->moments[n]);
-        cli_json_open(json, "axis", '[');
-        for (int k = 0; k < 3; k++)
-            cli_json_number(json, NULL, axis[k]);
-        cli_json_end(json, ']');
+        put_vector(json, "axis", m->axes[n]);
         cli_json_number(json, "axis_within_deg", m->axis_within[n]);
         cli_json_end(json, '}');
     }
     cli_json_end(json, ']');
 }
 
-static void put_measures(cli_json *json, const csgm_measures *m)
+static void put_box(cli_json *json, const csgm_oriented_box *box)
+{
+    cli_json_open(json, "oriented_box", '{');
+    cli_json_bool(json, "reached", box->is_reached);
+    put_interval(json, "volume", box->volume);
+    cli_json_open(json, "edges", '[');
+    for (int k = 0; k < 3; k++) {
+        cli_json_open(json, NULL, '{');
+        put_interval(json, "length", box->edges[k]);
+        put_vector(json, "axis", box->axes[k]);
+        put_interval(json, "least", box->ends[k]);
+        put_interval(json, "largest", box->ends[3 + k]);
+        cli_json_end(json, '}');
+    }
+    cli_json_end(json, ']');
+    cli_json_end(json, '}');
+}
+
+static void put_faces(cli_json *json, const csgm_faces *faces)
+{
+    cli_json_open(json, "faces", '{');
+    put_interval(json, "overhang", faces->overhang);
+    put_interval(json, "resting", faces->resting);
+    put_interval(json, "steep", faces->steep);
+    cli_json_count(json, "overhang_triangles", faces->overhang_triangles);
+    cli_json_count(json, "steep_triangles", faces->steep_triangles);
+    cli_json_end(json, '}');
+}
+
+/* "at" is there where points are known; of what there is none both ends are null. */
+static void put_span(cli_json *json, const char *key, const csgm_span *span)
+{
+    cli_json_open(json, key, '{');
+    put_interval(json, "length", span->length);
+    cli_json_bool(json, "none", span->length.low >= INFINITY);
+    cli_json_number(json, "overlooked", span->overlooked);
+    if (span->is_shown) {
+        cli_json_open(json, "at", '[');
+        put_vector(json, NULL, span->at[0]);
+        put_vector(json, NULL, span->at[1]);
+        cli_json_end(json, ']');
+    }
+    cli_json_end(json, '}');
+}
+
+static void put_figures(cli_json *json, const cli_figures *f)
 {
     static const char *const axes[] = {"x", "y", "z"};
     static const char *const products[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
     static const char *const sides[] = {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z"};
-    cli_json_bool(json, "reached", m->is_reached);
+    const csgm_measures *m = &f->measures;
+    cli_json_bool(json, "reached", cli_figures_are_reached(f));
     cli_json_count(json, "cubes", m->cubes);
     put_interval(json, "volume", m->volume);
     put_interval(json, "mass", m->mass);
@@ -65,6 +116,14 @@ static void put_measures(cli_json *json, const csgm_measures *m)
     put_principal(json, m);
     put_intervals(json, "bounds", sides, m->bounds, 6);
     put_interval(json, "area", m->area);
+    if (f->groups & CLI_FIGURES_BOX)
+        put_box(json, &f->box);
+    if (f->groups & CLI_FIGURES_FACES)
+        put_faces(json, &f->faces);
+    if (f->groups & CLI_FIGURES_WALLS) {
+        put_span(json, "wall", &f->walls.wall);
+        put_span(json, "gap", &f->walls.gap);
+    }
 }
 
 static void put_parts(cli_json *json, const cli_measured *measured)
@@ -73,7 +132,7 @@ static void put_parts(cli_json *json, const cli_measured *measured)
     for (size_t i = 0; i < measured->part_count; i++) {
         cli_json_open(json, NULL, '{');
         cli_json_string(json, "part", measured->parts[i].name);
-        put_measures(json, &measured->parts[i].measures);
+        put_figures(json, &measured->parts[i].figures);
         cli_json_end(json, '}');
     }
     cli_json_end(json, ']');
@@ -89,7 +148,7 @@ void cli_measure_json(const cli_measured *measured)
     cli_json_string(&json, "kind", measured->is_mesh ? "mesh" : "scene");
     cli_json_number(&json, "to", measured->to);
     cli_json_number(&json, "density", measured->density);
-    put_measures(&json, measured->measures);
+    put_figures(&json, measured->figures);
     if (measured->part_count)
         put_parts(&json, measured);
     if (measured->checks.count)

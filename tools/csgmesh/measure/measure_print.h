@@ -9,13 +9,13 @@
 /* One of the parts that are measured by themselves. */
 typedef struct cli_measured_part {
     const char *name;
-    csgm_measures measures;
+    cli_figures figures;
 } cli_measured_part;
 
 typedef struct cli_measured {
     const char *path, *part; /* part: NULL = all */
     bool is_mesh;
-    const csgm_measures *measures;
+    const cli_figures *figures;
     double density, to;
     cli_checks checks;
     const cli_measured_part *parts;

@@ -23,12 +23,48 @@ static void print_axis(int n, const csgm_measures *m)
         printf("  %-12s unknown\n", names[n]);
 }
 
-static void print_measures(const cli_measured *measured, const csgm_measures *m)
+static void print_box(const csgm_oriented_box *box)
+{
+    static const char *const names[] = {"box edge 1", "2", "3"};
+    char text[CLI_INTERVAL_TEXT];
+    print_interval("box volume", box->volume);
+    for (int k = 0; k < 3; k++)
+        printf("  %-12s %s along %.6g,%.6g,%.6g\n", names[k],
+               cli_format_interval(text, box->edges[k]), box->axes[k].x, box->axes[k].y,
+               box->axes[k].z);
+}
+
+static void print_faces(const csgm_faces *faces)
+{
+    print_interval("overhang", faces->overhang);
+    print_interval("  resting", faces->resting);
+    print_interval("steep", faces->steep);
+}
+
+static void print_span(const char *name, const csgm_span *span)
+{
+    char text[CLI_INTERVAL_TEXT];
+    const csgm_vec3 *at = span->at;
+    if (span->length.low >= INFINITY)
+        printf("  %-12s none", name);
+    else if (!span->is_shown)
+        printf("  %-12s %.6g or more", name, span->length.low);
+    else
+        printf("  %-12s %s from %.6g,%.6g,%.6g to %.6g,%.6g,%.6g", name,
+               cli_format_interval(text, span->length), at[0].x, at[0].y, at[0].z, at[1].x, at[1].y,
+               at[1].z);
+    if (span->overlooked > 0)
+        printf(", below %.4g not looked for everywhere", span->overlooked);
+    putchar('\n');
+}
+
+static void print_figures(const cli_measured *measured, const cli_figures *f)
 {
     static const char *const axes[] = {"centroid x", "y", "z"};
     static const char *const products[] = {"inertia xx", "yy", "zz", "xy", "xz", "yz"};
     static const char *const moments[] = {"moment 1", "2", "3"};
     static const char *const sides[] = {"least x", "y", "z", "largest x", "y", "z"};
+    const csgm_measures *m = &f->measures;
     print_interval("volume", m->volume);
     if (measured->density < 1 || measured->density > 1)
         print_interval("mass", m->mass);
@@ -46,6 +82,14 @@ static void print_measures(const cli_measured *measured, const csgm_measures *m)
         print_interval("area", m->area);
     else
         printf("  %-12s at least %.6g\n", "area", m->area.low * (1 - 5e-6)); /* rounded down */
+    if (f->groups & CLI_FIGURES_BOX)
+        print_box(&f->box);
+    if (f->groups & CLI_FIGURES_FACES)
+        print_faces(&f->faces);
+    if (f->groups & CLI_FIGURES_WALLS) {
+        print_span("wall", &f->walls.wall);
+        print_span("gap", &f->walls.gap);
+    }
 }
 
 void cli_measure_text(const cli_measured *measured)
@@ -54,11 +98,12 @@ void cli_measure_text(const cli_measured *measured)
     if (measured->part)
         printf(", part \"%s\"", measured->part);
     putchar('\n');
-    print_measures(measured, measured->measures);
+    print_figures(measured, measured->figures);
     for (size_t i = 0; i < measured->part_count; i++) {
         printf("part \"%s\"%s\n", measured->parts[i].name,
-               measured->parts[i].measures.is_reached ? "" : ", as far as it is proven");
-        print_measures(measured, &measured->parts[i].measures);
+               cli_figures_are_reached(&measured->parts[i].figures) ? ""
+                                                                    : ", as far as it is proven");
+        print_figures(measured, &measured->parts[i].figures);
     }
     for (size_t i = 0; i < measured->checks.count; i++)
         printf("  %-12s %s\n", cli_truth_name(measured->checks.items[i].truth),

@@ -16,6 +16,7 @@ from ._errors import (ArgumentError, Diagnostic, Error, FileError, FormatError, 
                       OutOfMemoryError, SceneError, SceneSyntaxError, SceneWarning, UnsupportedError)
 from ._layers import slice as slice  # pylint: disable=redefined-builtin
 from ._modules import Solid
+from ._fabrication import faces, oriented_box, walls
 from ._results import (Clearance, Diff, Mesh, Part, Scene, check, clear, diff, load, measure, mesh, parse, read, render, write,
                        write_image)
 from ._solid import Expression, code
@@ -36,7 +37,7 @@ def formats() -> "list[dict[str, object]]":
 __all__ = [
     "ArgumentError", "Clearance", "Diagnostic", "Diff", "Error", "Expression", "FileError", "FormatError", "InternalError", "LimitError",
     "Mesh", "MissingFileError", "OutOfMemoryError", "Part", "Scene", "SceneError", "SceneSyntaxError", "SceneWarning", "Solid",
-    "UnsupportedError", "check", "clear", "code", "diff", "features", "formats", "functions", "load", "measure", "mesh", "parse", "read",
-    "render", "write", "write_image",
+    "UnsupportedError", "check", "clear", "code", "diff", "faces", "features", "formats", "functions", "load", "measure", "mesh", "oriented_box",
+    "parse", "read", "render", "walls", "write", "write_image",
 ]
 __all__ += [*_modules.__all__, *functions.__all__]

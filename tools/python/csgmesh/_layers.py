@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from . import _core
 from ._call import Call, path_bytes, split
-from ._results import Source, _check_names, _spaces, document, scene_of
+from ._results import SCENE_OPTIONS, Source, _check_names, _spaces, document, scene_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -51,4 +51,4 @@ def _check_values(given: dict[str, Any]) -> None:
         raise ValueError("cusp goes with a least and a largest height of layers: layer=(0.05, 0.3), cusp=0.02")
 
 
-document(slice, [*_core.option_names["slice"], *(name for name in _core.option_names["scene"] if name != "only_check")])
+document(slice, [*_core.option_names["slice"], *SCENE_OPTIONS])

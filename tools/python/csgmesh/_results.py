@@ -625,8 +625,8 @@ def measure(source: Union[Source, Mesh], **options: Unpack[MeasureOptions]) -> S
     return _measures(call, _core.measure_scene(call.run, scene._core, call.of["measure"]))
 
 
-def _measures(call: Call, answer: tuple[str, Any]) -> SimpleNamespace:
-    part = call.of["measure"].get("part")
+def _measures(call: Call, answer: tuple[str, Any], kind: str = "measure") -> SimpleNamespace:
+    part = call.of[kind].get("part")
     if answer[0] == "ERR_ARGUMENT" and part is not None:
         raise ValueError(f"part: there is none of the name {part.decode()!r}, or another option is out of range")
     return _spaces(call.settle(answer)[0])
@@ -678,16 +678,17 @@ def clear(source: Union[str, "os.PathLike[str]", SolidBase], poses: Sequence[Map
     return [Clearance(**pair) for pair in core.pairs()]
 
 
+SCENE_OPTIONS = [name for name in _core.option_names["scene"] if name != "only_check"]
+
+
 def document(function: Any, options: Sequence[str]) -> None:
     """Docstrings end with the options that a function takes."""
-    names = textwrap.fill(", ".join([*options, "progress", "echo", *_core.option_names["run"]]), 110, initial_indent="    ",
-                          subsequent_indent="    ")
-    function.__doc__ = f"{function.__doc__}\n\n    Options:\n{names}"
+    names = textwrap.fill(", ".join([*options, "progress", "echo", *_core.option_names["run"]]), 106)
+    function.__doc__ = f"{function.__doc__}\n\n    Options:\n{textwrap.indent(names, '    ')}"
 
 
 def _document_all() -> None:
-    of = _core.option_names
-    scene = [name for name in of["scene"] if name != "only_check"]
+    of, scene = _core.option_names, SCENE_OPTIONS
     documented: list[tuple[Any, list[str]]] = [
         (load, scene), (parse, scene), (check, scene), (mesh, [*of["mesh"], *scene]), (Scene.mesh, of["mesh"]),
         (write, [*of["mesh"], *of["write"], *scene]), (Mesh.write, of["write"]), (render, [*of["render"], *scene]),

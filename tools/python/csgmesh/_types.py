@@ -174,6 +174,24 @@ class SliceOptions(SceneOptions, total=False):
     unit: Literal["none", "mm", "cm", "m", "in"]
     pixel: float  # the edge of a mask's pixel in millimetres (0.05)
     sync: bool
+
+
+class WallOptions(SceneOptions, total=False):
+    """Which walls and gaps are looked for, and how closely: csgm_wall_options."""
+
+    tolerance: float  # how closely lengths are to be known, as a share of the longest side
+    finest: float  # shorter ones are not looked for where normals are not known closely
+    angle_deg: float  # how far the two sides may be from parallel (30)
+    part: str  # of this name alone
+    most_pairs: int
+
+
+class FaceOptions(RunOptions, total=False):
+    """What overhangs, and what has no draft: csgm_face_options."""
+
+    up: Sequence[float]  # against gravity, or how a mould opens ((0, 0, 1))
+    overhang_deg: float  # faces that look down, so near to level (45)
+    draft_deg: float  # walls that are so near to upright (1)
     part: str  # of this name alone
 
 

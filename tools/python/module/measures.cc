@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 
 #include "csgmesh/clearance.h"
+#include "csgmesh/fabrication.h"
 #include "module/objects.h"
 #include "module/options.h"
 
@@ -76,6 +77,110 @@ nb::tuple measure_mesh(const Run &run, const Mesh &mesh, nb::dict given)
     return measure(run, given, [&](const csgm_measure_options &options, csgm_measures &out) {
         return csgm_measure_mesh(run.context->get(), &mesh.view, &options, &out);
     });
+}
+
+/* ---- what a workshop asks ------------------------------------------------------------------------ */
+
+/* Compiles the scene and hands the field on. */
+template <typename What> csgm_status with_field(const Run &run, const Scene &scene, What what)
+{
+    return run.work([&] {
+        csgm_field *field = nullptr;
+        csgm_status status = csgm_field_compile(run.context->get(), scene.scene.get(), &field);
+        FieldPointer owner{field, csgm_field_destroy};
+        return status != CSGM_OK ? status : what(field);
+    });
+}
+
+nb::dict dict_of(const csgm_oriented_box &box)
+{
+    nb::dict out;
+    nb::list axes;
+    for (const csgm_vec3 &axis : box.axes)
+        axes.append(vector_of(axis));
+    out["is_reached"] = box.is_reached;
+    out["cubes"] = box.cubes;
+    out["volume"] = pair_of(box.volume);
+    out["edges"] = pairs_of(box.edges);
+    out["axes"] = nb::tuple(axes);
+    out["ends"] = pairs_of(box.ends);
+    return out;
+}
+
+nb::dict dict_of(const csgm_span &span)
+{
+    nb::dict out;
+    out["length"] = pair_of(span.length);
+    out["overlooked"] = span.overlooked;
+    out["at"] = span.is_shown
+                    ? nb::object(nb::make_tuple(vector_of(span.at[0]), vector_of(span.at[1])))
+                    : nb::none();
+    return out;
+}
+
+csgm_measure_options measure_options_of(const Run &run, nb::dict given, Keep &keep)
+{
+    csgm_measure_options options = csgm_measure_options_default();
+    options.monitor = run.context->monitor();
+    fill_measure_options(options, given, keep);
+    return options;
+}
+
+nb::tuple oriented_box_of_scene(const Run &run, const Scene &scene, nb::dict given)
+{
+    Keep keep;
+    csgm_measure_options options = measure_options_of(run, given, keep);
+    csgm_oriented_box box = csgm_oriented_box_default();
+    csgm_status status = with_field(run, scene, [&](const csgm_field *field) {
+        return csgm_oriented_box_of_field(run.context->get(), field, &options, &box);
+    });
+    return result_of(status, dict_of(box));
+}
+
+nb::tuple oriented_box_of_mesh(const Run &run, const Mesh &mesh, nb::dict given)
+{
+    Keep keep;
+    csgm_measure_options options = measure_options_of(run, given, keep);
+    csgm_oriented_box box = csgm_oriented_box_default();
+    csgm_status status = run.work(
+        [&] { return csgm_oriented_box_of_mesh(run.context->get(), &mesh.view, &options, &box); });
+    return result_of(status, dict_of(box));
+}
+
+nb::tuple walls_of_scene(const Run &run, const Scene &scene, nb::dict given)
+{
+    Keep keep;
+    csgm_wall_options options = csgm_wall_options_default();
+    options.monitor = run.context->monitor();
+    fill_wall_options(options, given, keep);
+    csgm_walls walls = csgm_walls_default();
+    csgm_status status = with_field(run, scene, [&](const csgm_field *field) {
+        return csgm_walls_of_field(run.context->get(), field, &options, &walls);
+    });
+    nb::dict out;
+    out["is_reached"] = walls.is_reached;
+    out["pairs"] = walls.pairs;
+    out["wall"] = dict_of(walls.wall);
+    out["gap"] = dict_of(walls.gap);
+    return result_of(status, out);
+}
+
+nb::tuple faces_of_mesh(const Run &run, const Mesh &mesh, nb::dict given)
+{
+    Keep keep;
+    csgm_face_options options = csgm_face_options_default();
+    fill_face_options(options, given, keep);
+    csgm_faces faces = csgm_faces_default();
+    csgm_status status =
+        run.work([&] { return csgm_mesh_faces(run.context->get(), &mesh.view, &options, &faces); });
+    nb::dict out;
+    out["area"] = pair_of(faces.area);
+    out["overhang"] = pair_of(faces.overhang);
+    out["resting"] = pair_of(faces.resting);
+    out["steep"] = pair_of(faces.steep);
+    out["overhang_triangles"] = faces.overhang_triangles;
+    out["steep_triangles"] = faces.steep_triangles;
+    return result_of(status, out);
 }
 
 /* ---- clearances -------------------------------------------------------------------------------- */
@@ -166,6 +271,13 @@ void define_measures(nb::module_ &module)
     module.def("measure_scene", measure_scene, nb::arg("run"), nb::arg("scene"),
                nb::arg("options"));
     module.def("measure_mesh", measure_mesh, nb::arg("run"), nb::arg("mesh"), nb::arg("options"));
+    module.def("oriented_box_of_scene", oriented_box_of_scene, nb::arg("run"), nb::arg("scene"),
+               nb::arg("options"));
+    module.def("oriented_box_of_mesh", oriented_box_of_mesh, nb::arg("run"), nb::arg("mesh"),
+               nb::arg("options"));
+    module.def("walls_of_scene", walls_of_scene, nb::arg("run"), nb::arg("scene"),
+               nb::arg("options"));
+    module.def("faces_of_mesh", faces_of_mesh, nb::arg("run"), nb::arg("mesh"), nb::arg("options"));
     module.def("begin_clear", begin_clear, nb::arg("run"), nb::arg("options"));
     module.def("add_pose", add_pose, nb::arg("run"), nb::arg("clearances"), nb::arg("scene"));
 }

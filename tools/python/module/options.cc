@@ -392,6 +392,21 @@ const Row<csgm_measure_options> measure_rows[] = {
 };
 #undef OF
 
+#define OF(member) MEMBER(csgm_wall_options, member)
+const Row<csgm_wall_options> wall_rows[] = {
+    OF(tolerance), OF(finest), OF(angle_deg), OF(part), OF(most_pairs),
+};
+#undef OF
+
+#define OF(member) MEMBER(csgm_face_options, member)
+const Row<csgm_face_options> face_rows[] = {
+    OF(up),
+    OF(overhang_deg),
+    OF(draft_deg),
+    OF(part),
+};
+#undef OF
+
 void take_parts(csgm_clear_options &options, nb::handle value, const char *name, Keep &keep)
 {
     for (nb::handle part : nb::cast<nb::list>(value))
@@ -483,6 +498,16 @@ void fill_measure_options(csgm_measure_options &options, nb::dict given, Keep &k
     fill(options, given, measure_rows, keep);
 }
 
+void fill_wall_options(csgm_wall_options &options, nb::dict given, Keep &keep)
+{
+    fill(options, given, wall_rows, keep);
+}
+
+void fill_face_options(csgm_face_options &options, nb::dict given, Keep &keep)
+{
+    fill(options, given, face_rows, keep);
+}
+
 void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep)
 {
     fill(options, given, clear_rows, keep);
@@ -503,6 +528,8 @@ void define_options(nb::module_ &module)
     all["render"] = names(render_rows);
     all["diff"] = names(diff_rows);
     all["measure"] = names(measure_rows);
+    all["wall"] = names(wall_rows);
+    all["face"] = names(face_rows);
     all["clear"] = names(clear_rows);
     all["slice"] = names(slice_rows);
     module.attr("option_names") = all;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "csgmesh/clearance.h"
+#include "csgmesh/fabrication.h"
 #include "csgmesh/slicing.h"
 
 namespace nb = nanobind;
@@ -33,6 +34,8 @@ void fill_write_options(csgm_write_options &options, nb::dict given, Keep &keep)
 void fill_render_options(csgm_render_options &options, nb::dict given, Keep &keep);
 void fill_diff_options(csgm_diff_options &options, nb::dict given, Keep &keep);
 void fill_measure_options(csgm_measure_options &options, nb::dict given, Keep &keep);
+void fill_wall_options(csgm_wall_options &options, nb::dict given, Keep &keep);
+void fill_face_options(csgm_face_options &options, nb::dict given, Keep &keep);
 void fill_clear_options(csgm_clear_options &options, nb::dict given, Keep &keep);
 void fill_slice_options(csgm_slice_options &options, nb::dict given, Keep &keep);
 
