@@ -6,6 +6,7 @@
 #include "api/measured.h"
 #include "api/options.h"
 #include "measure/faces.h"
+#include "measure/field_faces.h"
 #include "measure/oriented.h"
 
 /* ---- oriented boxes ----------------------------------------------------------------------------
@@ -69,21 +70,46 @@ static bool is_angle(double degrees)
     return degrees > 0 && degrees < 90;
 }
 
+static bool adopt(csgm_face_options *own, const csgm_face_options *given)
+{
+    *own = csgm_face_options_default();
+    if (!csg_options_adopt(own, sizeof *own, given))
+        return false;
+    double length = csg_vec3_norm(own->up);
+    return length > 0 && isfinite(length) && is_angle(own->overhang_deg) &&
+           is_angle(own->draft_deg);
+}
+
 csgm_status csgm_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
                             const csgm_face_options *options, csgm_faces *out)
 {
-    csgm_face_options own = csgm_face_options_default();
+    csgm_face_options own;
     csgm_faces made = csgm_faces_default();
     csgm_mesh_view of;
     if (!context || !mesh || !out || !csg_struct_is_known(out, sizeof *out) ||
-        !csg_options_adopt(&own, sizeof own, options))
-        return CSGM_ERR_ARGUMENT;
-    double length = csg_vec3_norm(own.up);
-    if (!(length > 0 && isfinite(length)) || !is_angle(own.overhang_deg) ||
-        !is_angle(own.draft_deg) || !csg_measured_mesh(mesh, own.part, &of))
+        !adopt(&own, options) || !csg_measured_mesh(mesh, own.part, &of))
         return CSGM_ERR_ARGUMENT;
     csgm_status status = csg_mesh_faces(context, &of, &own, &made);
     if (status == CSGM_OK)
+        csg_struct_deliver(out, &made);
+    return status;
+}
+
+csgm_status csgm_field_faces(csgm_context *context, const csgm_field *field,
+                             const csgm_face_options *options, const csgm_measure_options *how,
+                             csgm_faces *out)
+{
+    csgm_face_options own;
+    csgm_measure_options closely;
+    csgm_faces made = csgm_faces_default();
+    if (!context || !field || !out || !csg_struct_is_known(out, sizeof *out) ||
+        !adopt(&own, options) || !csg_measure_options_adopt(&closely, how))
+        return CSGM_ERR_ARGUMENT;
+    const csgm_field *of = csg_option_part(field, own.part);
+    if (!of)
+        return CSGM_ERR_ARGUMENT;
+    csgm_status status = csg_field_faces(context, of, &own, &closely, &made);
+    if (csg_measured_so_far(status))
         csg_struct_deliver(out, &made);
     return status;
 }

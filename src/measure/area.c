@@ -47,6 +47,7 @@ typedef struct tally {
 
 typedef struct rounds {
     csg_measure_walk *walk;
+    const csg_area_selection *selection;
     tally *tallies; /* one a cube of the frontier */
     double share;
     uint64_t most_of_one;
@@ -131,29 +132,90 @@ static void add_up_to(account *a, double most)
     a->high += isfinite(most) ? most : 0;
 }
 
+/* A component that is `at`, of a unit vector that turns by an angle of that cosine at most. */
+static csg_truth turned_within(double at, double cosine, double least, double most)
+{
+    static const double ROUNDING = 1e-7;
+    double sine = sqrt(fmax(1 - cosine * cosine, 0)), rest = sqrt(fmax(1 - at * at, 0));
+    double low = at <= -cosine ? -1 : at * cosine - rest * sine - ROUNDING;
+    double high = at >= cosine ? 1 : at * cosine + rest * sine + ROUNDING;
+    if (high < least || low > most)
+        return CSG_TRUTH_NO;
+    return low >= fmax(least, -1) && high <= fmin(most, 1) ? CSG_TRUTH_YES : CSG_TRUTH_OPEN;
+}
+
+/* Heights that the group's pieces have in the cube, along the selection's direction. */
+static csg_truth is_low(const csg_area_selection *by, const csg_measure_cube *q,
+                        const csg_halves *halves, const csg_section_group *g)
+{
+    const csg_enclosure *e = &halves->planes[g->first];
+    double along = 0, rest = 0, height = 0, length = 0;
+    for (int k = 0; k < 3; k++) {
+        along += by->direction[k] * g->direction[k];
+        height += by->direction[k] * q->c[k];
+        length += e->slope[k] * g->direction[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        double across = by->direction[k] - along * g->direction[k];
+        rest += across * across;
+    }
+    height -= along * e->value / length;
+    double room =
+        (fabs(along) * g->width + sqrt(rest) * csg_enclosure_radius(q->half)) * (1 + 1e-9);
+    return height + room <= by->level_low   ? CSG_TRUTH_YES
+           : height - room > by->level_high ? CSG_TRUTH_NO
+                                            : CSG_TRUTH_OPEN;
+}
+
+static csg_truth is_selected(const rounds *r, const csg_measure_cube *q, const csg_halves *halves,
+                             const csg_section_group *g)
+{
+    const csg_area_selection *by = r->selection;
+    double at = 0;
+    if (!by)
+        return CSG_TRUTH_YES;
+    for (int k = 0; k < 3; k++)
+        at -= by->direction[k] * g->direction[k];
+    csg_truth turned =
+        g->cosine > 0 ? turned_within(at, g->cosine, by->least, by->most) : CSG_TRUTH_OPEN;
+    csg_truth low = by->level_low < INFINITY ? is_low(by, q, halves, g) : CSG_TRUTH_YES;
+    if (turned == CSG_TRUTH_NO || low == CSG_TRUTH_NO)
+        return CSG_TRUTH_NO;
+    return turned == CSG_TRUTH_YES && low == CSG_TRUTH_YES ? CSG_TRUTH_YES : CSG_TRUTH_OPEN;
+}
+
 /* One group alone can be the surface: it is a graph. */
-static void take_graph(const csg_section_group *g, double half, account *a)
+static void take_graph(const csg_section_group *g, double half, csg_truth selected, account *a)
 {
     double most = most_of(g, half), flow = fmax(flow_of(a, g->direction).most, 0);
     double more = g->cosine > 0 ? (1 / g->cosine - 1) * flow : INFINITY;
-    if (flow + more <= most)
+    if (selected == CSG_TRUTH_NO)
+        return;
+    if (selected == CSG_TRUTH_YES && flow + more <= most) {
         memcpy(a->s, g->direction, sizeof a->s);
-    add_up_to(a, flow + more <= most ? more : most);
+        add_up_to(a, more);
+    } else {
+        add_up_to(a, fmin(flow + more, most));
+    }
 }
 
 /* Several may meet. */
 static void take_group(const csg_halves *halves, double half, const csg_section_group *g,
-                       account *a)
+                       csg_truth selected, account *a)
 {
+    if (selected == CSG_TRUTH_NO)
+        return;
     csg_section seen = csg_section_of_group(halves, half, g);
-    a->low += seen.least;
+    a->low += selected == CSG_TRUTH_YES ? seen.least : 0;
     add_up_to(a, fmin(most_of(g, half), seen.most > 0 ? seen.most / g->cosine : 0));
 }
 
 /* turn: how far neighbours' s may be from this one's. */
-static account find_account(const csg_halves *halves, double half, double *turn)
+static account find_account(const rounds *r, const csg_measure_cube *q, const csg_halves *halves,
+                            double *turn)
 {
     csg_section_group groups[CSG_HALVES_MOST];
+    double half = q->half;
     int count = csg_section_find_groups(halves, half, groups);
     account a = {.low = 0};
     *turn = 1;
@@ -161,12 +223,16 @@ static account find_account(const csg_halves *halves, double half, double *turn)
         a.faces[i] = csg_section_of_face(halves, half, i / 2, i & 1 ? 1 : -1);
     if (count != 1) {
         for (int i = 0; i < count; i++)
-            take_group(halves, half, &groups[i], &a);
+            take_group(halves, half, &groups[i], is_selected(r, q, halves, &groups[i]), &a);
         return a;
     }
     double cosine = groups[0].cosine;
-    *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
-    take_graph(&groups[0], half, &a);
+    csg_truth selected = is_selected(r, q, halves, &groups[0]);
+    if (selected == CSG_TRUTH_NO)
+        *turn = 0;
+    else if (selected == CSG_TRUTH_YES)
+        *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
+    take_graph(&groups[0], half, selected, &a);
     return a;
 }
 
@@ -191,7 +257,7 @@ static bool settle(const rounds *r, csg_measure_worker *worker, tally *t, csg_me
     else if (q->state != CSG_CELL_SURFACE)
         *out = plain(q->half, q->state);
     else
-        *out = find_account(&halves, q->half, &turn);
+        *out = find_account(r, q, &halves, &turn);
     double open = open_of(out, turn);
     bool is_small = open <= r->share && (!out->is_unbounded || q->level >= UNBOUNDED_DEEPEST);
     if (!is_small && !is_last)
@@ -329,8 +395,8 @@ static void count_cubes(const rounds *r, uint64_t *latest, uint64_t *looked)
     }
 }
 
-static csgm_status go_on(rounds *r, double tolerance, uint64_t most_cubes, uint32_t *order,
-                         csg_area_bounds *out)
+static csgm_status go_on(rounds *r, double tolerance, double of, uint64_t most_cubes,
+                         uint32_t *order, csg_area_bounds *out)
 {
     static const double NO_LESS = 0.8; /* of what was open before: rounding is what is left */
     csgm_status status = CSGM_OK;
@@ -342,7 +408,8 @@ static csgm_status go_on(rounds *r, double tolerance, uint64_t most_cubes, uint3
         if (!csg_pool_run(r->walk->context->pool, r->walk->count, look_at, report, r))
             status = atomic_load(&r->out_of_memory) ? csg_context_no_memory(r->walk->context)
                                                     : csg_mesh_why_stopped(r->walk->watch);
-        double open = conclude(r, order, out), wanted = tolerance * (out->low + open);
+        double open = conclude(r, order, out), wanted;
+        wanted = tolerance * (of > 0 ? of : out->low + open);
         count_cubes(r, &latest, &out->cubes);
         bool was_in_vain = out->cubes > looked && !(open < NO_LESS * before);
         more = open > wanted && !was_in_vain && out->cubes < most_cubes &&
@@ -353,21 +420,22 @@ static csgm_status go_on(rounds *r, double tolerance, uint64_t most_cubes, uint3
     return status;
 }
 
-csgm_status csg_measure_area(csg_measure_walk *walk, double tolerance, uint64_t most_cubes,
-                             csg_area_bounds *out)
+csgm_status csg_measure_area(csg_measure_walk *walk, const csg_area_selection *selection,
+                             double tolerance, double of, uint64_t most_cubes, csg_area_bounds *out)
 {
     enum { LEVELS = 8 /* from the root to the frontier, and one */ };
     csg_memory *memory = &walk->context->memory;
     size_t bytes = (walk->count + 1) * sizeof(tally);
     size_t order_bytes = LEVELS * (walk->count + 1) * sizeof(uint32_t);
-    rounds r = {.walk = walk, .share = FACES * face_of(walk->half) * 0x1p-12};
+    rounds r = {
+        .walk = walk, .selection = selection, .share = FACES * face_of(walk->half) * 0x1p-12};
     csgm_status status;
     *out = (csg_area_bounds){.high = INFINITY};
     r.tallies = csg_memory_alloc(memory, bytes);
     uint32_t *order = csg_memory_alloc(memory, order_bytes);
     if (r.tallies && order) {
         begin_tallies(&r);
-        status = go_on(&r, tolerance, most_cubes, order, out);
+        status = go_on(&r, tolerance, of, most_cubes, order, out);
     } else {
         status = csg_context_no_memory(walk->context);
     }

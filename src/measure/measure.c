@@ -17,7 +17,7 @@
 #include "mesh/inspect.h"
 
 /* A share of all cubes is for the bounds, which take few where they can be found at all. */
-enum { SHARE_FOR_EXTENTS = 8, SHARE_FOR_AREA = 8 };
+enum { SHARE_FOR_EXTENTS = 8 };
 
 csgm_status csg_measure_refuse_empty(csgm_context *context)
 {
@@ -58,14 +58,12 @@ static void take_extents(const csg_extents *extents, csg_vec3 center, csgm_measu
             csg_interval_grown(extents->low[i] + at[i % 3], extents->high[i] + at[i % 3], 0x1p-50);
 }
 
-/* Of a surface less can be known than of what it encloses, at the same cost. */
 static csgm_status take_area(csg_measure_walk *walk, const csgm_measure_options *options,
                              csgm_measures *out)
 {
-    static const double WIDER = 10;
     csg_area_bounds area;
-    csgm_status status = csg_measure_area(walk, WIDER * options->tolerance,
-                                          options->most_cubes / SHARE_FOR_AREA, &area);
+    csgm_status status = csg_measure_area(walk, NULL, CSG_AREA_WIDER * options->tolerance, 0,
+                                          options->most_cubes / CSG_AREA_SHARE, &area);
     if (area.is_proven)
         out->area = (csgm_interval){area.low, area.high};
     out->cubes += area.cubes;

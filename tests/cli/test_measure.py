@@ -287,10 +287,26 @@ class Measure(unittest.TestCase):
             wrong = cli.run("measure", mesh, *options)
             self.assertEqual(wrong.returncode, 2)
             self.assertIn(said, wrong.stderr)
-        of_scene = cli.run("measure", path, "--overhang", 45)
-        self.assertEqual(of_scene.returncode, 2)
-        self.assertIn("of meshes, not of scenes", of_scene.stderr)
-        self.check("cube(1);", "overhang < 1", status=2)
+
+    def test_overhang_and_draft_of_scenes(self):
+        scene = "cube([1, 2, 3]); translate([0, 0, 2.5]) cube([3, 2, 1.5]);\n"
+        faces = self.measure(scene, "--to", 1e-3, "--overhang", 45)["faces"]
+        for name, area in (("overhang", 4 + 2), ("resting", 2), ("steep", 15 + 15)):
+            self.holds(faces[name], area)
+            self.assertLess(faces[name][1] - faces[name][0], 0.3)
+        turned = self.measure(scene, "--to", 1e-3, "--upward", "0,0,-1")["faces"]
+        self.holds(turned["resting"], 6)
+        self.assertGreater(turned["resting"][0], 5.9)
+        ball = self.measure("translate([3, 4, 5]) sphere(10);", "--to", 1e-3, "--overhang", 60, "--draft", 5)["faces"]
+        self.holds(ball["overhang"], 200 * PI * 0.5)
+        self.holds(ball["steep"], 400 * PI * math.sin(math.radians(5)))
+        self.holds(ball["resting"], 0)
+        self.assertLess(ball["overhang"][1] - ball["overhang"][0], 30)
+        cone = "cylinder(h = 10, r1 = 0, r2 = 10);"  # its side is at 45 degrees
+        self.holds(self.measure(cone, "--to", 1e-3, "--overhang", 46)["faces"]["overhang"], 100 * PI * 2 ** 0.5)
+        self.assertLess(self.measure(cone, "--to", 1e-3, "--overhang", 44)["faces"]["overhang"][1], 1)
+        self.check(scene, "overhang - resting < 4.1", status=0)
+        self.check(scene, "overhang - resting < 3.9", status=1)
 
     def test_walls_and_gaps(self):
         box = "difference() { cube([10, 20, 30]); translate([1, 1, 2]) cube([8, 18, 40]); }\n"

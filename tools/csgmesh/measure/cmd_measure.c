@@ -325,9 +325,6 @@ int cli_cmd_measure(cli_app *app)
         return status;
     const char *path = operands->items[0];
     bool is_mesh = asked != CSGM_FORMAT_AUTO || cli_path_is_mesh(path);
-    if (!is_mesh && asks_faces(app))
-        return cli_usage_error(app, "csgmesh SCENE -o mesh.stl makes one",
-                               "--overhang, --draft and --upward are of meshes, not of scenes");
     if (is_mesh && asks_walls(app))
         return cli_usage_error(app, "import(\"part.stl\"); is a scene",
                                "--walls, --finest and --wall-angle are of scenes, not of meshes");

@@ -38,9 +38,10 @@ csgm_status cli_figures_measure(csgm_context *context, const cli_measured_solid 
         status = solid->field ? csgm_oriented_box_of_field(context, solid->field, how, &out->box)
                               : csgm_oriented_box_of_mesh(context, &solid->mesh, how, &out->box);
     }
-    if (status == CSGM_OK && (groups & CLI_FIGURES_FACES) && !solid->field) {
+    if (status == CSGM_OK && (groups & CLI_FIGURES_FACES)) {
         out->groups |= CLI_FIGURES_FACES;
-        status = csgm_mesh_faces(context, &solid->mesh, &faces, &out->faces);
+        status = solid->field ? csgm_field_faces(context, solid->field, &faces, how, &out->faces)
+                              : csgm_mesh_faces(context, &solid->mesh, &faces, &out->faces);
     }
     if (status == CSGM_OK && (groups & CLI_FIGURES_WALLS) && solid->field) {
         out->groups |= CLI_FIGURES_WALLS;

@@ -32,7 +32,7 @@ typedef struct cli_figure_options {
     csgm_wall_options walls;
 } cli_figure_options;
 
-/* These groups; faces are of meshes alone, walls of scenes. Not CSGM_OK: stopped, and what is
+/* These groups; walls are of scenes alone. Not CSGM_OK: stopped, and what is
  * proven by then is there; or reported. */
 csgm_status cli_figures_measure(csgm_context *context, const cli_measured_solid *solid,
                                 const cli_figure_options *options, unsigned groups,

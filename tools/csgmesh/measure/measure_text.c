@@ -12,6 +12,15 @@ static void print_interval(const char *name, csgm_interval interval)
     printf("  %-12s %s\n", name, cli_format_interval(text, interval));
 }
 
+static void print_area(const char *name, csgm_interval area)
+{
+    static const double DOWN = 1 - 5e-6; /* what six digits are rounded by */
+    if (isfinite(area.high))
+        print_interval(name, area);
+    else
+        printf("  %-12s at least %.6g\n", name, area.low * DOWN);
+}
+
 static void print_axis(int n, const csgm_measures *m)
 {
     static const char *const names[] = {"axis 1", "2", "3"};
@@ -36,9 +45,9 @@ static void print_box(const csgm_oriented_box *box)
 
 static void print_faces(const csgm_faces *faces)
 {
-    print_interval("overhang", faces->overhang);
-    print_interval("  resting", faces->resting);
-    print_interval("steep", faces->steep);
+    print_area("overhang", faces->overhang);
+    print_area("  resting", faces->resting);
+    print_area("steep", faces->steep);
 }
 
 static void print_span(const char *name, const csgm_span *span)
@@ -78,10 +87,7 @@ static void print_figures(const cli_measured *measured, const cli_figures *f)
         print_axis(i, m);
     for (int i = 0; i < 6; i++)
         print_interval(sides[i], m->bounds[i]);
-    if (isfinite(m->area.high))
-        print_interval("area", m->area);
-    else
-        printf("  %-12s at least %.6g\n", "area", m->area.low * (1 - 5e-6)); /* rounded down */
+    print_area("area", m->area);
     if (f->groups & CLI_FIGURES_BOX)
         print_box(&f->box);
     if (f->groups & CLI_FIGURES_FACES)
