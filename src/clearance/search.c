@@ -34,7 +34,7 @@ enum {
 enum { SHARE_DECIDED = 4, SHARE_NEARLY = 16 };
 static const double NEARLY = 0.9;
 /* Likewise for ways: to find out, and once it is known that they stay apart. */
-enum { SHARE_WAY = 4, SHARE_WAY_DECIDED = 256 };
+enum { SHARE_WAY = 4, SHARE_WAY_DECIDED = 32 };
 
 typedef struct search {
     const csg_clear_task *task;
