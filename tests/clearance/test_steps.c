@@ -276,6 +276,7 @@ static bool try_way(csg_random *r, uint32_t *grazing)
     const csg_affine frames[2] = {none, away};
     csgm_clear_options options = csgm_clear_options_default();
     options.tolerance = 0.01;
+    options.most_pairs = 1 << 17; /* an eighth of the default */
     csgm_clear_pair p = at_share(&options, &s, &start, frames, solids, (const double[]){0, 1}, 2);
     assert_int_equal(p.steps, 1);
     if (p.steps_open)
