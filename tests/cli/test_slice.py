@@ -214,8 +214,10 @@ class Slice(unittest.TestCase):
         with zipfile.ZipFile(out) as archive:
             self.assertIsNone(archive.testzip())
             names = archive.namelist()
-            self.assertEqual(names, [f"{i:05}.png" for i in range(10)])
-            pictures = [grey_png(archive.read(name)) for name in names]
+            self.assertEqual(names, [f"{i:05}.png" for i in range(10)] + ["layers.csv"])
+            pictures = [grey_png(archive.read(name)) for name in names[:-1]]
+            self.assertEqual(archive.read("layers.csv").decode().splitlines(), ["picture,from,to"] + [
+                f"{i:05}.png,{i / 2:g},{i / 2 + 0.5:g}" for i in range(10)])
         self.assertEqual({(width, height) for width, height, _ in pictures}, {(100, 60)})
         rows = pictures[0][2]
         self.assertEqual((rows[59][0], rows[0][99], rows[29][29], rows[30][30]), (255, 255, 0, 0))
@@ -273,6 +275,12 @@ class Slice(unittest.TestCase):
         tops, _ = cli_layers(self.slice(scene, *how, name="layers.cli")[0])
         for (_, high), (top, _) in zip(heights, tops):
             self.assertLess(abs(high - top), 1e-4)
+        if ".zip" in FORMATS:
+            with zipfile.ZipFile(self.slice(scene, *how, "--pixel", 1, name="masks.zip")[0]) as archive:
+                self.assertIsNone(archive.testzip())
+                rows = [line.split(",") for line in archive.read("layers.csv").decode().splitlines()[1:]]
+            for (low, high), (_, bottom, top) in zip(heights, rows):
+                self.assertLess(max(abs(low - float(bottom)), abs(high - float(top))), 1e-4)
         if ".3mf" in FORMATS:
             stack = slices_3mf(self.slice(scene, *how, name="layers.3mf")[0])
             for (low, high), (bottom, top, _) in zip(heights, stack):

@@ -14,9 +14,10 @@ const char *csg_layers_format_name(csgm_layers_format format);
 /* Are the libraries there that it needs? False for what is no format. */
 bool csg_layers_format_available(csgm_layers_format format);
 
-/* A picture in an archive. */
+/* A picture in an archive, and where its layer is, in millimetres. */
 typedef struct csg_mask_entry {
     uint32_t crc, bytes;
+    double low, high;
 } csg_mask_entry;
 
 /* What is the same for all layers of a file; scene units. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Masks for printers with a screen: a ZIP archive with a grey PNG for each layer, 00000.png and so
- * on, white where the solid is, grey by how much of a pixel it covers. Pictures are compressed
+ * on, white where the solid is, grey by how much of a pixel it covers, and layers.csv, which says
+ * from where to where each layer is. Pictures are compressed
  * already, so that they are stored; no time stamps. The pictures are written here, with zlib alone,
  * since they are made by all threads in memory: bands of rows, no filter.
  */
@@ -18,6 +19,8 @@ enum {
     NAME_BYTES = 9,
     VERSION = 10 /* of the format: 1.0, stored */
 };
+
+static const char HEIGHTS[] = "layers.csv";
 
 /* ---- PNG -------------------------------------------------------------------------------------- */
 
@@ -142,8 +145,37 @@ static void put_mask(csg_page *page, const csg_layers_head *head, const csg_slic
     const uint8_t *picture = (const uint8_t *)page->data + from;
     entry->bytes = (uint32_t)(page->length - from);
     entry->crc = (uint32_t)crc32(0, picture, entry->bytes);
+    entry->low = layer->low * page->scale;
+    entry->high = layer->high * page->scale;
     csg_zip_record record = record_of(entry);
     csg_zip_store_head((uint8_t *)page->data + at, &record);
+}
+
+/* Heights of layers in millimetres, which their pictures do not have. */
+static csg_mask_entry put_heights(csg_page *page, const csg_layers_head *head)
+{
+    uint8_t empty[CSG_ZIP_HEAD_BYTES] = {0};
+    csg_mask_entry entry = {0};
+    size_t at = page->length;
+    csg_page_bytes(page, empty, sizeof empty);
+    csg_page_text(page, HEIGHTS);
+    size_t from = page->length;
+    csg_page_text(page, "picture,from,to\n");
+    for (size_t i = 0; i < head->count; i++) {
+        csg_page_format(page, "%05zu.png,", i);
+        csg_page_number(page, head->masks[i].low, page->decimals);
+        csg_page_text(page, ",");
+        csg_page_number(page, head->masks[i].high, page->decimals);
+        csg_page_text(page, "\n");
+    }
+    if (page->failed)
+        return entry;
+    entry.bytes = (uint32_t)(page->length - from);
+    entry.crc = (uint32_t)crc32(0, (const uint8_t *)page->data + from, entry.bytes);
+    csg_zip_record record = record_of(&entry);
+    record.name_bytes = sizeof HEIGHTS - 1;
+    csg_zip_store_head((uint8_t *)page->data + at, &record);
+    return entry;
 }
 
 static void begin_masks(csg_page *page, const csg_layers_head *head)
@@ -155,6 +187,8 @@ static void end_masks(csg_page *page, const csg_layers_head *head)
 {
     uint32_t at = 0;
     uint8_t bytes[CSG_ZIP_RECORD_BYTES], end[CSG_ZIP_END_BYTES];
+    csg_mask_entry heights = put_heights(page, head);
+    size_t from = page->length;
     for (size_t i = 0; i < head->count; i++) {
         csg_zip_record record = record_of(&head->masks[i]);
         csg_zip_store_record(bytes, &record, at);
@@ -162,8 +196,13 @@ static void end_masks(csg_page *page, const csg_layers_head *head)
         csg_page_format(page, "%05zu.png", i);
         at += CSG_ZIP_HEAD_BYTES + NAME_BYTES + head->masks[i].bytes;
     }
-    csg_zip_store_end(end, (uint32_t)head->count, at,
-                      (uint32_t)(head->count * (CSG_ZIP_RECORD_BYTES + NAME_BYTES)));
+    csg_zip_record record = record_of(&heights);
+    record.name_bytes = sizeof HEIGHTS - 1;
+    csg_zip_store_record(bytes, &record, at);
+    csg_page_bytes(page, bytes, sizeof bytes);
+    csg_page_text(page, HEIGHTS);
+    at += CSG_ZIP_HEAD_BYTES + record.name_bytes + heights.bytes;
+    csg_zip_store_end(end, (uint32_t)head->count + 1, at, (uint32_t)(page->length - from));
     csg_page_bytes(page, end, sizeof end);
 }
 
@@ -171,7 +210,7 @@ const csg_layers_writer csg_layers_zip = {begin_masks,
                                           put_mask,
                                           end_masks,
                                           .has_masks = true,
-                                          .most_layers = 65535,
+                                          .most_layers = 65534,
                                           .most_bytes = CSG_LAYERS_ARCHIVE_BYTES};
 
 bool csg_masks_available(void)
