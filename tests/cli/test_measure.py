@@ -337,6 +337,25 @@ class Measure(unittest.TestCase):
             self.assertEqual(result.returncode, 2)
             self.assertIn(said, result.stderr)
 
+    def test_gaps_between_convex_parts_are_those_that_clear_finds(self):
+        dice = random.Random(4)
+        for _ in range(3):
+            parts = []
+            for name, from_x in (("a", 0), ("b", 9)):
+                shape = dice.choice(("cube([%.2f, %.2f, %.2f]);" % tuple(dice.uniform(2, 4) for _ in range(3)),
+                                     f"sphere({dice.uniform(1, 2):.2f});", f"cylinder(h = {dice.uniform(2, 4):.2f}, r = 1.5);"))
+                turn = ", ".join(f"{dice.uniform(0, 90):.1f}" for _ in range(3))
+                parts.append(f'part("{name}") translate([{from_x + dice.uniform(0, 1):.2f}, {dice.uniform(0, 3):.2f}, 0]) rotate([{turn}]) {shape}\n')
+            scene = "".join(parts)
+            with self.subTest(scene):
+                gap = self.measure(scene, "--to", 1e-2, "--walls")["gap"]["length"]
+                path = os.path.join(self.folder, "scene.txt")
+                clear = json.loads(cli.run("clear", path, "--parts", "a,b", "--json").stdout)["pairs"][0]["gap"]
+                low, high = clear if isinstance(clear, list) else (clear["low"], clear["high"])
+                self.assertLessEqual(gap[0], high)
+                self.assertGreaterEqual(gap[1], low - 1e-4)
+                self.assertLess(gap[1] - gap[0], 0.3)
+
     def test_a_limit_leaves_what_is_proven_of_walls(self):
         path = write(self.folder, "scene.txt", "torus(8, 2);\n")
         short = cli.run("measure", path, "--to", 1e-2, "--walls", "--json", "--timeout", 0.3)
