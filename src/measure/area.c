@@ -398,7 +398,7 @@ static void count_cubes(const rounds *r, uint64_t *latest, uint64_t *looked)
 static csgm_status go_on(rounds *r, double tolerance, double of, uint64_t most_cubes,
                          uint32_t *order, csg_area_bounds *out)
 {
-    static const double NO_LESS = 0.8; /* of what was open before: rounding is what is left */
+    static const double NO_LESS = 0.95; /* of what was open before: rounding is what is left */
     csgm_status status = CSGM_OK;
     double before = INFINITY;
     for (bool more = true; more && status == CSGM_OK;) {
