@@ -49,7 +49,10 @@ static bool consider(search *s, uint32_t a, uint32_t b, double parent_bound)
         s->left = fmin(s->left, item.key);
         return true;
     }
-    return csg_clear_queue_push(&s->queue, s->task->memory, item);
+    if (csg_clear_queue_push(&s->queue, s->task->memory, item))
+        return true;
+    *s->task->out_of_memory = true;
+    return false;
 }
 
 /* Pairs of what `node` was divided into with itself, or with `other`. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Walls and gaps by the C interface: closed forms, random voids, solids that touch, limits.
+ * Arguments: how many random solids, 4; a seed.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,6 +11,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/geometry.h"
@@ -92,12 +94,15 @@ static void test_closed_forms(void **state)
     }
 }
 
+static uint32_t solids = 4;
+static uint64_t seed = 12;
+
 /* Two balls are cut out of a cube: what is left is thinnest between them, or before a face. */
 static void test_random_voids(void **state)
 {
-    csg_random dice = {12};
+    csg_random dice = {seed};
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (uint32_t i = 0; i < solids; i++) {
         csg_vec3 at[2];
         double r[2], thin = 20, narrow = INFINITY;
         char text[320];
@@ -178,12 +183,16 @@ static void test_limits_and_refusals(void **state)
     assert_span(&walls.wall, 1, 0.05);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_forms),        cmocka_unit_test(test_random_voids),
         cmocka_unit_test(test_knives_and_angles),   cmocka_unit_test(test_same_for_any_threads),
         cmocka_unit_test(test_limits_and_refusals),
     };
+    if (argc > 1)
+        solids = (uint32_t)strtoul(argv[1], NULL, 10);
+    if (argc > 2)
+        seed = strtoull(argv[2], NULL, 10);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
