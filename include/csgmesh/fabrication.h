@@ -123,8 +123,8 @@ CSGM_API csgm_faces csgm_faces_default(void);
 /* Of each triangle, by its normal. options NULL = defaults. CSGM_ERR_ARGUMENT: an option out of
  * range, or no part has that name. CSGM_ERR_FORMAT (reported): a coordinate is not finite or an
  * index out of range. CSGM_ERR_SCENE (reported): there are no triangles. */
-CSGM_API csgm_status csgm_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
-                                     const csgm_face_options *options, csgm_faces *out);
+CSGM_API csgm_status csgm_faces_of_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                                        const csgm_face_options *options, csgm_faces *out);
 
 /* The same of a field's surface, between bounds that are proven, without a mesh. What rests is
  * within 0.1 degrees of level there, and within a 10 000th of the longest side of the bounds of the
@@ -132,9 +132,9 @@ CSGM_API csgm_status csgm_mesh_faces(csgm_context *context, const csgm_mesh_view
  * how NULL = defaults: ten times its tolerance is how closely areas are to be known, as a share of
  * the whole one, and an eighth of most_cubes are looked at for each; its density and part are not
  * asked for. Triangles are 0. Statuses are those of csgm_measure_field. */
-CSGM_API csgm_status csgm_field_faces(csgm_context *context, const csgm_field *field,
-                                      const csgm_face_options *options,
-                                      const csgm_measure_options *how, csgm_faces *out);
+CSGM_API csgm_status csgm_faces_of_field(csgm_context *context, const csgm_field *field,
+                                         const csgm_face_options *options,
+                                         const csgm_measure_options *how, csgm_faces *out);
 
 #ifdef __cplusplus
 }

@@ -80,8 +80,8 @@ static bool adopt(csgm_face_options *own, const csgm_face_options *given)
            is_angle(own->draft_deg);
 }
 
-csgm_status csgm_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
-                            const csgm_face_options *options, csgm_faces *out)
+csgm_status csgm_faces_of_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                               const csgm_face_options *options, csgm_faces *out)
 {
     csgm_face_options own;
     csgm_faces made = csgm_faces_default();
@@ -89,15 +89,15 @@ csgm_status csgm_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
     if (!context || !mesh || !out || !csg_struct_is_known(out, sizeof *out) ||
         !adopt(&own, options) || !csg_measured_mesh(mesh, own.part, &of))
         return CSGM_ERR_ARGUMENT;
-    csgm_status status = csg_mesh_faces(context, &of, &own, &made);
+    csgm_status status = csg_faces_of_mesh(context, &of, &own, &made);
     if (status == CSGM_OK)
         csg_struct_deliver(out, &made);
     return status;
 }
 
-csgm_status csgm_field_faces(csgm_context *context, const csgm_field *field,
-                             const csgm_face_options *options, const csgm_measure_options *how,
-                             csgm_faces *out)
+csgm_status csgm_faces_of_field(csgm_context *context, const csgm_field *field,
+                                const csgm_face_options *options, const csgm_measure_options *how,
+                                csgm_faces *out)
 {
     csgm_face_options own;
     csgm_measure_options closely;
@@ -108,7 +108,7 @@ csgm_status csgm_field_faces(csgm_context *context, const csgm_field *field,
     const csgm_field *of = csg_option_part(field, own.part);
     if (!of)
         return CSGM_ERR_ARGUMENT;
-    csgm_status status = csg_field_faces(context, of, &own, &closely, &made);
+    csgm_status status = csg_faces_of_field(context, of, &own, &closely, &made);
     if (csg_measured_so_far(status))
         csg_struct_deliver(out, &made);
     return status;

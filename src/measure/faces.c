@@ -59,8 +59,8 @@ static csgm_interval interval_of(const sum *s, const tally *t, uint64_t count)
     return (csgm_interval){fmax(s->low - slack, 0), s->high > 0 ? s->high + slack : 0};
 }
 
-csgm_status csg_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
-                           const csgm_face_options *options, csgm_faces *out)
+csgm_status csg_faces_of_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                              const csgm_face_options *options, csgm_faces *out)
 {
     CSG_ZONE(context, "faces");
     static const double LEVEL = 1e-6; /* of the size: floats of a plane that is turned */

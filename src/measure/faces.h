@@ -9,7 +9,7 @@
 #include "csgmesh/fabrication.h"
 
 /* Options are complete and in range. CSGM_OK, or why not (reported). */
-csgm_status csg_mesh_faces(csgm_context *context, const csgm_mesh_view *mesh,
-                           const csgm_face_options *options, csgm_faces *out);
+csgm_status csg_faces_of_mesh(csgm_context *context, const csgm_mesh_view *mesh,
+                              const csgm_face_options *options, csgm_faces *out);
 
 #endif

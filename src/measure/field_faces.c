@@ -71,9 +71,9 @@ static csgm_status take_all(job *j, const csgm_face_options *options, csgm_faces
     return status == CSGM_OK ? take_resting(j, &out->resting) : status;
 }
 
-csgm_status csg_field_faces(csgm_context *context, const csgm_field *field,
-                            const csgm_face_options *options, const csgm_measure_options *how,
-                            csgm_faces *out)
+csgm_status csg_faces_of_field(csgm_context *context, const csgm_field *field,
+                               const csgm_face_options *options, const csgm_measure_options *how,
+                               csgm_faces *out)
 {
     CSG_ZONE(context, "faces");
     const csgm_interval unknown = {0, INFINITY};

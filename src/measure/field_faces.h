@@ -10,8 +10,8 @@
 /* Options are complete and in range; how: tolerance, most_cubes and the monitor. CSGM_OK, or why
  * not (reported); with CSGM_ERR_LIMIT, CSGM_ERR_MEMORY and CSGM_CANCELLED *out has what is proven
  * by then. */
-csgm_status csg_field_faces(csgm_context *context, const csgm_field *field,
-                            const csgm_face_options *options, const csgm_measure_options *how,
-                            csgm_faces *out);
+csgm_status csg_faces_of_field(csgm_context *context, const csgm_field *field,
+                               const csgm_face_options *options, const csgm_measure_options *how,
+                               csgm_faces *out);
 
 #endif

@@ -237,7 +237,7 @@ static void test_overhangs_of_a_turned_box(void **state)
         csgm_faces faces = csgm_faces_default();
         options.overhang_deg = 45;
         options.draft_deg = 25;
-        assert_int_equal(csgm_mesh_faces(context, &mesh, &options, &faces), CSGM_OK);
+        assert_int_equal(csgm_faces_of_mesh(context, &mesh, &options, &faces), CSGM_OK);
         double overhang = deg < 45 ? 6 : 12, rests = deg ? 0 : 6;
         double steep = 16 + (deg < 25 ? 24 : deg > 65 ? 12 : 0);
         assert_near(faces.area.low, 52, 1e-4);
@@ -259,19 +259,19 @@ static void test_an_angle_that_rounding_leaves_open(void **state)
     csgm_faces faces = csgm_faces_default();
     (void)state;
     options.up = csg_vec3_make(5, 0, 5); /* two sides look down by just 45 degrees */
-    assert_int_equal(csgm_mesh_faces(context, &mesh, &options, &faces), CSGM_OK);
+    assert_int_equal(csgm_faces_of_mesh(context, &mesh, &options, &faces), CSGM_OK);
     assert_true(faces.overhang.low <= 1e-9);
     assert_true(faces.overhang.high >= 6 + 12);
     options.up = csg_vec3_make(0, 0, 0);
-    assert_int_equal(csgm_mesh_faces(context, &mesh, &options, &faces), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_faces_of_mesh(context, &mesh, &options, &faces), CSGM_ERR_ARGUMENT);
     options = csgm_face_options_default();
     options.overhang_deg = 90;
-    assert_int_equal(csgm_mesh_faces(context, &mesh, &options, &faces), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_faces_of_mesh(context, &mesh, &options, &faces), CSGM_ERR_ARGUMENT);
     mesh.triangle_count = 0;
-    assert_int_equal(csgm_mesh_faces(context, &mesh, NULL, &faces), CSGM_ERR_SCENE);
+    assert_int_equal(csgm_faces_of_mesh(context, &mesh, NULL, &faces), CSGM_ERR_SCENE);
     mesh.triangle_count = SIDES;
     mesh.vertex_count = CORNERS - 1;
-    assert_int_equal(csgm_mesh_faces(context, &mesh, NULL, &faces), CSGM_ERR_FORMAT);
+    assert_int_equal(csgm_faces_of_mesh(context, &mesh, NULL, &faces), CSGM_ERR_FORMAT);
     csgm_context_destroy(context);
 }
 

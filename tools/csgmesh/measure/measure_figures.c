@@ -40,8 +40,8 @@ csgm_status cli_figures_measure(csgm_context *context, const cli_measured_solid 
     }
     if (status == CSGM_OK && (groups & CLI_FIGURES_FACES)) {
         out->groups |= CLI_FIGURES_FACES;
-        status = solid->field ? csgm_field_faces(context, solid->field, &faces, how, &out->faces)
-                              : csgm_mesh_faces(context, &solid->mesh, &faces, &out->faces);
+        status = solid->field ? csgm_faces_of_field(context, solid->field, &faces, how, &out->faces)
+                              : csgm_faces_of_mesh(context, &solid->mesh, &faces, &out->faces);
     }
     if (status == CSGM_OK && (groups & CLI_FIGURES_WALLS) && solid->field) {
         out->groups |= CLI_FIGURES_WALLS;

@@ -171,8 +171,8 @@ nb::tuple faces_of_mesh(const Run &run, const Mesh &mesh, nb::dict given)
     csgm_face_options options = csgm_face_options_default();
     fill_face_options(options, given, keep);
     csgm_faces faces = csgm_faces_default();
-    csgm_status status =
-        run.work([&] { return csgm_mesh_faces(run.context->get(), &mesh.view, &options, &faces); });
+    csgm_status status = run.work(
+        [&] { return csgm_faces_of_mesh(run.context->get(), &mesh.view, &options, &faces); });
     nb::dict out;
     out["area"] = pair_of(faces.area);
     out["overhang"] = pair_of(faces.overhang);

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT
+ * Rounds; see rounds.h.
+ */
+#include "measure/rounds.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/pool.h"
+
+enum {
+    ASK_EVERY = 256, /* cubes, whether to stop */
+    LEVELS = 8       /* from the root to the frontier, and one */
+};
+
+/* Of one cube of the frontier. */
+typedef struct tally {
+    double worst;           /* the most that one cube leaves open */
+    uint64_t cubes, looked; /* in the latest round; in all */
+    bool is_full;           /* it had its share of cubes: it stays as it is */
+} tally;
+
+typedef struct rounds {
+    const csg_rounds_job *job;
+    csg_measure_walk *walk;
+    tally *tallies; /* one a cube of the frontier, as the accounts */
+    char *accounts;
+    uint32_t *order; /* of the frontier's cubes, octant by octant, level by level */
+    double share;
+    uint64_t most_of_one;
+    atomic_bool out_of_memory;
+} rounds;
+
+static char *account_of(const rounds *r, char *accounts, size_t i)
+{
+    return accounts + i * r->job->account_bytes;
+}
+
+/* False: out of memory, or it is time to stop. */
+static bool visit(rounds *r, csg_measure_worker *worker, tally *t, const csg_measure_cube *parent,
+                  void *out)
+{
+    const csg_rounds_job *job = r->job;
+    csg_measure_cube children[CSG_OCTANTS];
+    csg_arena_mark mark = csg_arena_get_mark(&worker->arena);
+    char *octants = csg_arena_alloc(&worker->arena, CSG_OCTANTS * job->account_bytes);
+    bool done = octants && csg_measure_divide(r->walk, worker, parent, &worker->arena, children);
+    if (!done)
+        atomic_store(&r->out_of_memory, true);
+    for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        csg_measure_cube *q = &children[o];
+        char *account = account_of(r, octants, (size_t)o);
+        if (q->state != CSG_CELL_SURFACE) {
+            job->settle_plain(job->user, q, account);
+            continue;
+        }
+        t->is_full |= t->cubes >= r->most_of_one;
+        t->cubes++;
+        double open = job->settle(job->user, r->walk, worker, q, account);
+        if (open <= r->share || t->is_full || q->level >= CSG_MEASURE_DEEPEST)
+            t->worst = fmax(t->worst, open);
+        else
+            done = visit(r, worker, t, q, account);
+        if (t->cubes % ASK_EVERY == 0 && csg_mesh_should_stop(r->walk->watch))
+            done = false;
+    }
+    if (done)
+        job->combine(job->user, octants, out);
+    csg_arena_release_to(&worker->arena, mark);
+    return done;
+}
+
+static bool look_at(void *user, uint32_t worker_index, size_t index)
+{
+    rounds *r = user;
+    csg_measure_worker *worker = &r->walk->workers[worker_index];
+    tally *kept = &r->tallies[index], now = {.worst = 0};
+    if (kept->worst <= r->share || kept->is_full)
+        return true;
+    csg_arena_mark mark = csg_arena_get_mark(&worker->arena);
+    void *account = csg_arena_alloc(&worker->arena, r->job->account_bytes);
+    bool done = account && !csg_mesh_should_stop(r->walk->watch) &&
+                visit(r, worker, &now, &r->walk->cubes[index], account);
+    if (!account)
+        atomic_store(&r->out_of_memory, true);
+    if (done) {
+        now.looked = kept->looked + now.cubes;
+        *kept = now;
+        memcpy(account_of(r, r->accounts, index), account, r->job->account_bytes);
+    }
+    csg_arena_release_to(&worker->arena, mark);
+    return done;
+}
+
+static void report(void *user, size_t done, size_t count)
+{
+    const rounds *r = user;
+    csg_mesh_report_progress(r->walk->watch, (double)done / (double)count);
+}
+
+static void begin_tallies(rounds *r)
+{
+    const csg_rounds_job *job = r->job;
+    for (size_t i = 0; i < r->walk->count; i++) {
+        const csg_measure_cube *q = &r->walk->cubes[i];
+        bool is_surface = q->state == CSG_CELL_SURFACE;
+        r->tallies[i] = (tally){.worst = is_surface ? INFINITY : 0};
+        (is_surface ? job->leave_open : job->settle_plain)(job->user, q,
+                                                           account_of(r, r->accounts, i));
+    }
+}
+
+/* ---- from the frontier up to the root ----------------------------------------------------------
+ */
+
+static int octant_of(const double c[3], const csg_measure_cube *q)
+{
+    return (q->c[0] > c[0] ? 1 : 0) | (q->c[1] > c[1] ? 2 : 0) | (q->c[2] > c[2] ? 4 : 0);
+}
+
+/* The account of the cube that has these of the frontier in it; order: room for as many on each
+ * level. False: out of memory. */
+static bool gather(rounds *r, const csg_measure_cube *cube, const uint32_t *cubes, size_t count,
+                   uint32_t *order, void *out)
+{
+    csg_arena *arena = &r->walk->workers[0].arena;
+    size_t counts[CSG_OCTANTS + 1] = {0}, next[CSG_OCTANTS];
+    if (!count) {
+        r->job->settle_plain(r->job->user, cube, out);
+        return true;
+    }
+    if (count == 1 && r->walk->cubes[cubes[0]].half >= cube->half) {
+        memcpy(out, account_of(r, r->accounts, cubes[0]), r->job->account_bytes);
+        return true;
+    }
+    for (size_t i = 0; i < count; i++)
+        counts[octant_of(cube->c, &r->walk->cubes[cubes[i]]) + 1]++;
+    for (int o = 0; o < CSG_OCTANTS; o++)
+        counts[o + 1] += counts[o];
+    memcpy(next, counts, sizeof next);
+    for (size_t i = 0; i < count; i++)
+        order[next[octant_of(cube->c, &r->walk->cubes[cubes[i]])]++] = cubes[i];
+    csg_arena_mark mark = csg_arena_get_mark(arena);
+    char *octants = csg_arena_alloc(arena, CSG_OCTANTS * r->job->account_bytes);
+    bool done = octants != NULL;
+    for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        csg_measure_cube child = {.half = cube->half / 2, .state = CSG_CELL_OUTSIDE};
+        for (int k = 0; k < 3; k++)
+            child.c[k] = cube->c[k] + (o >> k & 1 ? child.half : -child.half);
+        done = gather(r, &child, order + counts[o], counts[o + 1] - counts[o],
+                      order + r->walk->count, account_of(r, octants, (size_t)o));
+    }
+    if (done)
+        r->job->combine(r->job->user, octants, out);
+    csg_arena_release_to(arena, mark);
+    return done;
+}
+
+static csg_rounds_counts count_cubes(const rounds *r, uint64_t *latest)
+{
+    csg_rounds_counts counts = {0};
+    *latest = r->walk->count;
+    for (size_t i = 0; i < r->walk->count; i++) {
+        const tally *t = &r->tallies[i];
+        *latest += t->cubes;
+        counts.cubes += t->looked;
+        counts.longest = t->cubes > counts.longest ? t->cubes : counts.longest;
+    }
+    counts.longest += r->walk->count;
+    return counts;
+}
+
+/* The ratio of what is wanted to what is open. Less than 0: out of memory. */
+static double conclude(rounds *r, const csg_rounds_counts *counts)
+{
+    csg_measure_cube root = csg_measure_root(r->walk);
+    csg_arena *arena = &r->walk->workers[0].arena;
+    csg_arena_mark mark = csg_arena_get_mark(arena);
+    void *account = csg_arena_alloc(arena, r->job->account_bytes);
+    double ratio = -1;
+    for (size_t i = 0; i < r->walk->count; i++)
+        r->order[i] = (uint32_t)i;
+    root.state = CSG_CELL_OUTSIDE; /* if there is no frontier */
+    if (account && gather(r, &root, r->order, r->walk->count, r->order + r->walk->count, account))
+        ratio = r->job->conclude(r->job->user, account, counts);
+    csg_arena_release_to(arena, mark);
+    return ratio;
+}
+
+/* ---- how they go on ----------------------------------------------------------------------------
+ */
+
+/* The next share. What is left open falls with its square root where the surface is smooth, slower
+ * where less is known of it; cubes become more by its power of 2/3 at most. False: so many are not
+ * to be had. */
+static bool choose_share(rounds *r, double ratio, uint64_t latest, uint64_t left)
+{
+    static const double LEAST_STEP = 0.25, LARGEST_STEP = 0x1p-12, MARGIN = 0.7;
+    double wanted = MARGIN * ratio, step = fmax(fmin(wanted * wanted, LEAST_STEP), LARGEST_STEP);
+    double more = (double)left / (double)latest, affordable = more * sqrt(more);
+    if (!(affordable > 1 / LEAST_STEP))
+        return false;
+    r->share *= fmax(step, 1 / affordable);
+    return true;
+}
+
+static csgm_status go_on(rounds *r, uint64_t most_cubes)
+{
+    static const double BETTER = 1.05; /* than the round before, or rounding is what is left */
+    csgm_status status = CSGM_OK;
+    csg_rounds_counts counts = {0};
+    double before = 0;
+    for (bool more = true; more && status == CSGM_OK;) {
+        uint64_t latest, looked = counts.cubes;
+        r->most_of_one = 64 + (most_cubes - counts.cubes) / 16;
+        csg_mesh_take(r->walk->watch, CSGM_STAGE_MEASURE, 0.3);
+        bool done = csg_pool_run(r->walk->context->pool, r->walk->count, look_at, report, r);
+        counts = count_cubes(r, &latest);
+        double ratio = conclude(r, &counts);
+        if (atomic_load(&r->out_of_memory) || ratio < 0)
+            status = csg_context_no_memory(r->walk->context);
+        else if (!done)
+            status = csg_mesh_why_stopped(r->walk->watch);
+        bool is_better = ratio > BETTER * before || counts.cubes == looked;
+        more = ratio < 1 && is_better && counts.cubes < most_cubes &&
+               choose_share(r, ratio, latest, most_cubes - counts.cubes);
+        before = ratio;
+    }
+    return status;
+}
+
+csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job,
+                               uint64_t most_cubes)
+{
+    csg_memory *memory = &walk->context->memory;
+    size_t count = walk->count + 1, bytes = count * sizeof(tally),
+           account_bytes = count * job->account_bytes,
+           order_bytes = LEVELS * count * sizeof(uint32_t);
+    rounds r = {.job = job, .walk = walk, .share = job->share};
+    csgm_status status;
+    r.tallies = csg_memory_alloc(memory, bytes);
+    r.accounts = csg_memory_alloc(memory, account_bytes);
+    r.order = csg_memory_alloc(memory, order_bytes);
+    if (r.tallies && r.accounts && r.order) {
+        begin_tallies(&r);
+        status = go_on(&r, most_cubes);
+    } else {
+        status = csg_context_no_memory(walk->context);
+    }
+    csg_memory_release(memory, r.order, order_bytes);
+    csg_memory_release(memory, r.accounts, account_bytes);
+    csg_memory_release(memory, r.tallies, bytes);
+    return status;
+}
