@@ -206,10 +206,12 @@ static bool choose_share(rounds *r, double ratio, uint64_t latest, uint64_t left
 
 static csgm_status go_on(rounds *r, uint64_t most_cubes)
 {
-    static const double BETTER = 1.05; /* than the round before, or rounding is what is left */
+    static const double BETTER = 1.05; /* than the best round so far */
+    enum { VAIN = 2 };                 /* rounds that are not: rounding is what is left */
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
-    double before = 0;
+    double best = 0;
+    int vain = 0;
     for (bool more = true; more && status == CSGM_OK;) {
         uint64_t latest, looked = counts.cubes;
         r->most_of_one = 64 + (most_cubes - counts.cubes) / 16;
@@ -221,10 +223,14 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
             status = csg_context_no_memory(r->walk->context);
         else if (!done)
             status = csg_mesh_why_stopped(r->walk->watch);
-        bool is_better = ratio > BETTER * before || counts.cubes == looked;
-        more = ratio < 1 && is_better && counts.cubes < most_cubes &&
+        if (ratio > BETTER * best) {
+            best = ratio;
+            vain = 0;
+        } else if (counts.cubes > looked) {
+            vain++;
+        }
+        more = ratio < 1 && vain < VAIN && counts.cubes < most_cubes &&
                choose_share(r, ratio, latest, most_cubes - counts.cubes);
-        before = ratio;
     }
     return status;
 }

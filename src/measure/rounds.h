@@ -35,9 +35,9 @@ typedef struct csg_rounds_job {
     double (*conclude)(void *user, const void *root, const csg_rounds_counts *counts);
 } csg_rounds_job;
 
-/* Until it is enough, rounds make it no better, or most_cubes have been looked at. CSGM_OK, or why
- * it was stopped (reported); the last call of `conclude` has what is known by then. The same for
- * any number of threads. */
+/* Until it is enough, two rounds in a row make it no better, or most_cubes have been looked at.
+ * CSGM_OK, or why it was stopped (reported); the last call of `conclude` has what is known by then.
+ * The same for any number of threads. */
 csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job,
                                uint64_t most_cubes);
 
