@@ -130,7 +130,7 @@ CSGM_API csgm_status csgm_faces_of_mesh(csgm_context *context, const csgm_mesh_v
  * within 0.1 degrees of level there, and within a 10 000th of the longest side of the bounds of the
  * lowest point. The ends of intervals are infinite where nothing bounds how gradients turn.
  * how NULL = defaults: ten times its tolerance is how closely areas are to be known, as a share of
- * the whole one, and an eighth of most_cubes are looked at for each; its density and part are not
+ * the whole one, and half of most_cubes are looked at for each; its density and part are not
  * asked for. Triangles are 0. Statuses are those of csgm_measure_field. */
 CSGM_API csgm_status csgm_faces_of_field(csgm_context *context, const csgm_field *field,
                                          const csgm_face_options *options,

@@ -8,7 +8,7 @@
 
 /* Of a surface less can be known than of what it encloses, at the same cost: how many times the
  * tolerance, and what share of all cubes. */
-enum { CSG_AREA_WIDER = 10, CSG_AREA_SHARE = 8 };
+enum { CSG_AREA_WIDER = 10, CSG_AREA_SHARE = 2 };
 
 typedef struct csg_area_bounds {
     double low, high; /* high: INFINITY where nothing bounds how a field's gradients turn */

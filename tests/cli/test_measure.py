@@ -158,6 +158,15 @@ class Measure(unittest.TestCase):
                 self.assertEqual(len(caret) - 3, column)
         self.check("cube(2);", status=2, options=("--junit", os.path.join(self.folder, "r.xml")))
 
+    def test_as_close_as_seconds_allow(self):
+        scene = "torus(8, 2);"  # 1e-4 takes more than two million cubes
+        found = self.measure(scene)
+        self.assertFalse(found["reached"])
+        self.holds(found["volume"], 64 * PI ** 2)
+        self.assertLess(found["volume"][1] - found["volume"][0], 2e-3 * found["volume"][0])
+        self.assertLess(found["cubes"], 2 ** 22)
+        self.measure(scene, "--to", 1e-5, "--timeout", 1, status=2)
+
     def test_density(self):
         found = self.measure("cube(2);", "--to", 1e-3, "--density", 3)
         self.holds(found["mass"], 24)

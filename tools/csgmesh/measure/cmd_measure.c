@@ -21,14 +21,23 @@ static bool ask_interrupted(void *user)
     return cli_interrupt_is_asked();
 }
 
+/* Where nobody says how closely, it is as close as some seconds allow. */
+static bool is_asked_closely(const cli_app *app)
+{
+    return app->options->given[CLI_OPTION_measure_to];
+}
+
 static csgm_measure_options measure_options(cli_app *app)
 {
+    enum { CUBES_OF_SECONDS = 1 << 21 };
     const cli_options *o = app->options;
     csgm_measure_options options = csgm_measure_options_default();
     if (o->given[CLI_OPTION_measure_density])
         options.density = o->measure_density;
-    if (o->given[CLI_OPTION_measure_to])
+    if (is_asked_closely(app))
         options.tolerance = o->measure_to;
+    else
+        options.most_cubes = CUBES_OF_SECONDS;
     options.part = o->part;
     options.monitor = (csgm_monitor){
         .progress = cli_console_progress, .cancelled = ask_interrupted, .user = &app->console};
@@ -52,7 +61,7 @@ static csgm_wall_options wall_options(cli_app *app)
 {
     const cli_options *o = app->options;
     csgm_wall_options options = csgm_wall_options_default();
-    if (o->given[CLI_OPTION_measure_to])
+    if (is_asked_closely(app))
         options.tolerance = o->measure_to;
     if (o->given[CLI_OPTION_measure_finest])
         options.finest = o->measure_finest;
@@ -169,14 +178,20 @@ static void say_what_is_overlooked(cli_app *app, const cli_measured *measured)
             measured->path, most);
 }
 
+static bool are_reached(const cli_measured *measured)
+{
+    bool all = cli_figures_are_reached(measured->figures);
+    for (size_t i = 0; i < measured->part_count; i++)
+        all = all && cli_figures_are_reached(&measured->parts[i].figures);
+    return all;
+}
+
 /* status: of the measuring; what is proven is printed after a limit, too. What is checked decides
  * about the exit status: what is proven by then is proven. */
 static int print(cli_app *app, cli_measured *measured, csgm_status status)
 {
     const cli_options *o = app->options;
-    bool is_reached = cli_figures_are_reached(measured->figures);
-    for (size_t i = 0; i < measured->part_count; i++)
-        is_reached = is_reached && cli_figures_are_reached(&measured->parts[i].figures);
+    bool is_reached = !is_asked_closely(app) || are_reached(measured);
     cli_console_end_progress(&app->console);
     if (status != CSGM_OK && !is_stopped(status))
         return cli_exit_status(status);
