@@ -202,9 +202,13 @@ static bool find_of_concave(walker *w, uint32_t index, csg_enclosure *e)
     return isfinite(e->value + e->below + e->above + csg_vec3_norm(g));
 }
 
-/* Where its faces meet, as their intersection. */
+/* Where its faces meet, as their intersection. They are found in doubles from the tape's
+ * parameters, so that nothing but the rounding of these is in them: of a matrix, an offset and the
+ * leaf's own lengths, each half a unit in the last place of a float of what it is multiplied by.
+ * That is a sixteenth of the leaf's slack at most, where a value by floats has all of it. */
 static bool put_faces(walker *w, uint32_t index)
 {
+    static const double OF_VALUES = 0.125 /* of the slack */, OF_NORMALS = 1e-6;
     const csg_tape_node *leaf = &w->tape->nodes[index];
     const float *parameters = w->tape->parameters + leaf->parameters;
     const float c[3] = {(float)w->c[0], (float)w->c[1], (float)w->c[2]};
@@ -215,9 +219,8 @@ static bool put_faces(walker *w, uint32_t index)
         return false;
     for (uint32_t i = 0; i < balls.count; i++) {
         const double *g = balls.items[i].at;
-        double turned =
-            CSG_ENCLOSURE_ROUNDING * fmax(1, sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]));
-        double rounding = 2 * (double)parameters[CSG_LEAF_SLACK] + turned * w->radius;
+        double turned = OF_NORMALS * fmax(1, sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]));
+        double rounding = OF_VALUES * (double)parameters[CSG_LEAF_SLACK] + turned * w->radius;
         const csg_enclosure e = {.value = faces[i].value,
                                  .slope = {g[0], g[1], g[2]},
                                  .below = faces[i].below + rounding,
@@ -237,6 +240,15 @@ static bool asks_corners(const csg_tape_node *leaf)
     return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
 }
 
+/* It is as flat as floats can tell; its faces may be known better. */
+static bool is_all_rounding(const walker *w, const csg_tape_node *leaf, const csg_enclosure *e)
+{
+    static const double MOST = 4; /* times the slack */
+    return csg_op_has(leaf->op, CSG_TRAIT_FACES) &&
+           e->below + e->above <=
+               MOST * (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+}
+
 static bool push_leaf(walker *w, uint32_t index)
 {
     static const double BENT = 0.05; /* of the half edge */
@@ -247,10 +259,12 @@ static bool push_leaf(walker *w, uint32_t index)
     push_operand(w, index);
     if (!find_of_concave(w, index, &e))
         return false;
-    if (e.below + e.above > BENT * w->half || (w->with_strays && !(e.stray > 0))) {
+    bool is_flat = is_all_rounding(w, leaf, &e);
+    if (is_flat || e.below + e.above > BENT * w->half || (w->with_strays && !(e.stray > 0))) {
         operand *o = &w->stack[w->top - 1];
-        o->signs_only = put_faces(w, index);
-        if (o->signs_only)
+        bool has_faces = put_faces(w, index), is_one = w->out->plane_count - o->plane == 1;
+        o->signs_only = has_faces && !(is_flat && is_one); /* one flat face is the field itself */
+        if (has_faces)
             return true;
         forget(w, o);
     }

@@ -31,7 +31,7 @@ def test_solids_scenes_and_meshes(folder):
         found = csgmesh.measure(source)
         assert found.volume[0] <= 24 <= found.volume[1] and found.volume[1] - found.volume[0] < 0.01
         assert found.area[0] <= 52 <= found.area[1]
-        assert (found.area[1] < 53) == isinstance(source, csgmesh.Mesh) and found.axis_within[0] < 1
+        assert found.area[1] - found.area[0] < 0.1 and found.axis_within[0] < 1
     low, high = csgmesh.measure(BOXES, define={"t": 9}, part="b", tolerance=1e-3).volume
     assert low <= 4 / 3 * math.pi <= high
     assert not csgmesh.measure("torus(8, 2);", tolerance=1e-9, most_cubes=1000).is_reached

@@ -174,6 +174,7 @@ class SliceOptions(SceneOptions, total=False):
     unit: Literal["none", "mm", "cm", "m", "in"]
     pixel: float  # the edge of a mask's pixel in millimetres (0.05)
     sync: bool
+    part: str  # of this name alone
 
 
 class WallOptions(SceneOptions, total=False):
