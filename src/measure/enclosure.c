@@ -43,7 +43,6 @@ static bool find_of_leaf(const csg_kernel *kernel, const csg_tape *tape, const d
     double rounding = doubt + CSG_ENCLOSURE_ROUNDING * radius;
     out->below = out->above = rounding + 0.5 * ball->spread * radius;
     out->stray = ball->spread + CSG_ENCLOSURE_ROUNDING;
-    out->is_convex = false;
     memcpy(out->slope, ball->at, sizeof out->slope);
     return true;
 }
@@ -105,6 +104,7 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     const csg_vec3 at = csg_vec3_make(c[0], c[1], c[2]);
     const csg_gradients_region cube = {{at, at, at}, at, 0, radius / sqrt(3.0)};
     out->bend = 0;
+    out->is_convex = false;
     if (find_of_leaf(kernel, tape, c, radius, scratch, out) ||
         find_of_formula(kernel, tape, c, radius, out, scratch))
         return isfinite(out->value + out->below + out->above);
@@ -117,7 +117,6 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     if (turns)
         memcpy(out->slope, gradients.middle, sizeof out->slope);
     out->value = gradients.value;
-    out->is_convex = false;
     out->stray = stray + CSG_ENCLOSURE_ROUNDING * gradients.longest;
     out->below = out->above =
         stray * radius + gradients.doubt + CSG_ENCLOSURE_ROUNDING * gradients.longest * radius;
