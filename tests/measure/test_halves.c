@@ -323,7 +323,7 @@ static void formulas_bend(void **state)
         assert_non_null(scratch);
         for (int k = 0; k < 30; k++) {
             double half = ldexp(1, -3 - k % 6), c[3];
-            csg_enclosure e;
+            csg_enclosure e = {.is_convex = true}; /* nobody may rely on what was there */
             for (int axis = 0; axis < 3; axis++)
                 c[axis] = half * round(csg_random_uniform(&random, -0.5, 0.5) / half);
             if (!csg_enclosure_find(csg_kernel_for(CSGM_ISA_AUTO), &m.field->tape, c, half, scratch,
@@ -331,6 +331,7 @@ static void formulas_bend(void **state)
                 !(e.bend > 0))
                 continue;
             check_bend(&m, &random, c, half, &e);
+            assert_false(e.is_convex);
             known++;
         }
         free(scratch);
