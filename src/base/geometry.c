@@ -115,7 +115,7 @@ csg_affine csg_affine_scale(csg_vec3 factors)
 }
 
 /* Quarter turns come out exact, so that turned solids keep exact faces. */
-static void sin_cos_deg(double angle_deg, double *s, double *c)
+void csg_sin_cos_deg(double angle_deg, double *s, double *c)
 {
     double turn = fmod(angle_deg, 360);
     if (turn < 0)
@@ -134,7 +134,7 @@ static void sin_cos_deg(double angle_deg, double *s, double *c)
 csg_affine csg_affine_rotate(double angle_deg, csg_vec3 axis)
 {
     double s, c;
-    sin_cos_deg(angle_deg, &s, &c);
+    csg_sin_cos_deg(angle_deg, &s, &c);
     double k = 1 - c, x = axis.x, y = axis.y, z = axis.z;
     return (csg_affine){.m = {{c + k * x * x, k * x * y - s * z, k * x * z + s * y},
                               {k * x * y + s * z, c + k * y * y, k * y * z - s * x},

@@ -94,6 +94,8 @@ csg_affine csg_affine_scale(csg_vec3 factors);
 /* Right-handed rotation by angle_deg about a unit axis; exact for multiples of 90 degrees
  * about coordinate axes. */
 csg_affine csg_affine_rotate(double angle_deg, csg_vec3 axis);
+/* Exact for multiples of 90 degrees. */
+void csg_sin_cos_deg(double angle_deg, double *sine, double *cosine);
 /* Reflection in the plane through the origin with this normal (any length > 0). */
 csg_affine csg_affine_mirror(csg_vec3 normal);
 /* A rotation that takes +z to the direction of `to` (any length > 0). */

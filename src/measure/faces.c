@@ -6,7 +6,6 @@
 
 #include <math.h>
 
-#include "base/elementary.h"
 #include "base/trace.h"
 #include "measure/measure.h"
 #include "measure/mesh_points.h"
@@ -14,7 +13,6 @@
 /* Of a normal, as a share of the product of the two edges it comes from: six products and three
  * differences of what was rounded once. */
 static const double ROUNDING = 0x1p-49;
-static const double PER_DEGREE = 3.14159265358979323846 / 180;
 
 typedef struct sum {
     double low, high;
@@ -64,11 +62,11 @@ csgm_status csg_faces_of_mesh(csgm_context *context, const csgm_mesh_view *mesh,
 {
     CSG_ZONE(context, "faces");
     static const double LEVEL = 1e-6; /* of the size: floats of a plane that is turned */
-    tally t = {.up = csg_vec3_normalize(options->up),
-               .lowest = INFINITY,
-               .cosine = csg_cos(options->overhang_deg * PER_DEGREE),
-               .sine = csg_sin(options->draft_deg * PER_DEGREE)};
+    tally t = {.up = csg_vec3_normalize(options->up), .lowest = INFINITY};
     csg_mesh_points points;
+    double ignored;
+    csg_sin_cos_deg(options->overhang_deg, &ignored, &t.cosine);
+    csg_sin_cos_deg(options->draft_deg, &t.sine, &ignored);
     if (!mesh->triangle_count)
         return csg_measure_refuse_empty(context);
     csgm_status status = csg_mesh_points_gather(&points, context, mesh);

@@ -5,14 +5,11 @@
 
 #include <math.h>
 
-#include "base/elementary.h"
 #include "base/trace.h"
 #include "field/field.h"
 #include "measure/area.h"
 #include "measure/extent.h"
 #include "measure/measure.h"
-
-static const double PER_DEGREE = 3.14159265358979323846 / 180;
 
 typedef struct job {
     csg_measure_walk *walk;
@@ -51,7 +48,9 @@ static csgm_status take_resting(const job *j, csgm_interval *out)
                                              j->how->most_cubes / CSG_AREA_SHARE, &lowest);
     if (status != CSGM_OK)
         return status;
-    csg_area_selection selection = along(j, -1, -csg_cos(STRAIGHT_DEG * PER_DEGREE));
+    double sine, cosine;
+    csg_sin_cos_deg(STRAIGHT_DEG, &sine, &cosine);
+    csg_area_selection selection = along(j, -1, -cosine);
     selection.level_low = LEVEL * j->size - lowest.high;
     selection.level_high = LEVEL * j->size - lowest.low;
     return take(j, &selection, out);
@@ -59,8 +58,9 @@ static csgm_status take_resting(const job *j, csgm_interval *out)
 
 static csgm_status take_all(job *j, const csgm_face_options *options, csgm_faces *out)
 {
-    double cosine = csg_cos(options->overhang_deg * PER_DEGREE);
-    double sine = csg_sin(options->draft_deg * PER_DEGREE);
+    double sine, cosine, ignored;
+    csg_sin_cos_deg(options->overhang_deg, &ignored, &cosine);
+    csg_sin_cos_deg(options->draft_deg, &sine, &ignored);
     const csg_area_selection overhang = along(j, -1, -cosine), steep = along(j, -sine, sine);
     csgm_status status = take(j, NULL, &out->area);
     j->area = isfinite(out->area.high) ? out->area.high : out->area.low;

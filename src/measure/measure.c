@@ -117,15 +117,19 @@ csgm_status csg_measure_field(csgm_context *context, const csgm_field *field,
 /* ---- meshes ------------------------------------------------------------------------------------
  */
 
+csgm_status csg_measure_refuse_broken(csgm_context *context)
+{
+    csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, NULL, NULL,
+                   "the mesh has a coordinate that is not finite or an index out of range");
+    return CSGM_ERR_FORMAT;
+}
+
 static csgm_status check_closed(csgm_context *context, const csgm_mesh_check *check)
 {
     uint64_t open = check->boundary_edges, turned = check->misoriented_edges,
              shared = check->nonmanifold_edges;
-    if (check->index_out_of_range || !isfinite(check->volume)) {
-        csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, NULL, NULL,
-                       "the mesh has a coordinate that is not finite or an index out of range");
-        return CSGM_ERR_FORMAT;
-    }
+    if (check->index_out_of_range || !isfinite(check->volume))
+        return csg_measure_refuse_broken(context);
     if (!open && !turned && !shared)
         return CSGM_OK;
     csg_diag_plain(&context->diags, CSG_DIAG_NOT_CLOSED, NULL,

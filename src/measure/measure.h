@@ -19,5 +19,7 @@ csgm_status csg_measure_mesh(csgm_context *context, const csgm_mesh_view *mesh,
 /* CSGM_ERR_SCENE (reported): nothing is there to be measured; what there is reaches to infinity. */
 csgm_status csg_measure_refuse_empty(csgm_context *context);
 csgm_status csg_measure_check_bounds(csgm_context *context, csg_box bounds);
+/* CSGM_ERR_FORMAT (reported): a coordinate is not finite or an index out of range. */
+csgm_status csg_measure_refuse_broken(csgm_context *context);
 
 #endif

@@ -6,21 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/mesh_codes.h"
-
-static csgm_status refuse(csgm_context *context)
-{
-    csg_diag_plain(&context->diags, CSG_DIAG_BAD_MESH, NULL, NULL,
-                   "the mesh has a coordinate that is not finite or an index out of range");
-    return CSGM_ERR_FORMAT;
-}
+#include "measure/measure.h"
 
 static csgm_status mark_used(csgm_context *context, const csgm_mesh_view *mesh, uint8_t *used)
 {
     memset(used, 0, (size_t)mesh->vertex_count);
     for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
         if (mesh->indices[i] >= mesh->vertex_count)
-            return refuse(context);
+            return csg_measure_refuse_broken(context);
         used[mesh->indices[i]] = 1;
     }
     return CSGM_OK;
@@ -42,7 +35,7 @@ csgm_status csg_mesh_points_gather(csg_mesh_points *p, csgm_context *context,
             continue;
         csg_vec3 at = csg_vec3_from_floats(mesh->positions + 3 * v);
         if (!isfinite(at.x + at.y + at.z))
-            status = refuse(context);
+            status = csg_measure_refuse_broken(context);
         p->items[p->count++] = at;
         box = csg_box_hull(box, (csg_box){at, at});
     }

@@ -7,8 +7,6 @@
 
 #include <math.h>
 
-#include "base/elementary.h"
-
 /* Of products of unit vectors, and of lengths. */
 static const double ROUNDING = 1e-9;
 
@@ -122,8 +120,9 @@ bool csg_wall_is_apart(const csg_wall_normals *n, const double d[3], csg_wall_an
 
 static csg_wall_angle angle_of(double degrees)
 {
-    double radians = degrees * (3.14159265358979323846 / 180);
-    return (csg_wall_angle){csg_sin(radians), csg_cos(radians)};
+    csg_wall_angle angle;
+    csg_sin_cos_deg(degrees, &angle.sine, &angle.cosine);
+    return angle;
 }
 
 csg_wall_angles csg_wall_angles_make(double one_deg, double other_deg)
