@@ -110,7 +110,8 @@ typedef struct csg_tape_node {
     };
 } csg_tape_node;
 
-/* Parameters of a leaf: sigma, raise, slack, color, then the frame (3 or 12 floats), then its own.
+/* Parameters of a leaf: sigma, raise, slack, color, off, turned, then the frame (3 or 12 floats),
+ * then its own.
  *   sigma  +-1, or +-(smallest singular value) where the frame is no similarity
  *   raise  what offsets above add to sigma times the leaf's own value
  *   slack  bound on the rounding error of a value of this leaf anywhere in the lattice
@@ -120,6 +121,8 @@ enum {
     CSG_LEAF_RAISE,
     CSG_LEAF_SLACK,
     CSG_LEAF_COLOR,
+    CSG_LEAF_OFF,
+    CSG_LEAF_TURNED,
     CSG_LEAF_FRAME,
     CSG_LEAF_OWN_OFFSET = CSG_LEAF_FRAME + 3,
     CSG_LEAF_OWN_AFFINE = CSG_LEAF_FRAME + 12

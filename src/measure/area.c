@@ -19,6 +19,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/taylor/tape_taylor.h"
+#include "measure/graph.h"
 #include "measure/rounds.h"
 #include "measure/section.h"
 
@@ -198,6 +200,23 @@ static void take_group(const csg_halves *halves, double half, const csg_section_
     add_up_to(a, fmin(most_of(g, half), seen.most > 0 ? seen.most / g->cosine : 0));
 }
 
+/* How much of the cube's faces is in the solid. Where the field is smooth that is known closer than
+ * by planes. */
+static void find_faces(const csg_measure_cube *q, const csg_halves *halves, bool is_one, account *a)
+{
+    csg_taylor f;
+    double half = q->half, whole = face_of(half), area, error;
+    bool is_smooth =
+        is_one && csg_tape_taylor(&q->tape, q->c, csg_enclosure_radius(half), &f);
+    for (int i = 0; i < FACES; i++) {
+        int axis = i / 2, side = i & 1 ? 1 : -1;
+        if (is_smooth && csg_graph_face(&f, half, axis, side, &area, &error))
+            a->faces[i] = (csg_section){fmax(area - error, 0), fmin(area + error, whole)};
+        else
+            a->faces[i] = csg_section_of_face(halves, half, axis, side);
+    }
+}
+
 /* turn: how far neighbours' s may be from this one's. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
                             double *turn)
@@ -207,8 +226,7 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
     int count = csg_section_find_groups(halves, half, groups);
     account a = {.low = 0};
     *turn = 1;
-    for (int i = 0; i < FACES; i++)
-        a.faces[i] = csg_section_of_face(halves, half, i / 2, i & 1 ? 1 : -1);
+    find_faces(q, halves, count == 1, &a);
     if (count != 1) {
         for (int i = 0; i < count; i++)
             take_group(halves, half, &groups[i], is_selected(j, q, halves, &groups[i]), &a);

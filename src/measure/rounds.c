@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/elementary.h"
 #include "base/pool.h"
 
 enum {
@@ -190,13 +191,27 @@ static double conclude(rounds *r, const csg_rounds_counts *counts)
 /* ---- how they go on ----------------------------------------------------------------------------
  */
 
-/* The next share. What is left open falls with its square root where the surface is smooth, slower
- * where less is known of it; cubes become more by its power of 2/3 at most. False: so many are not
- * to be had. */
-static bool choose_share(rounds *r, double ratio, uint64_t latest, uint64_t left)
+/* What the latest rounds have shown: what is left open falls with the share's power `falls`, between
+ * that of planes where the surface is smooth, 1/2, and that of better models, 3/5, or slower where
+ * less is known of it; at first it is taken for the least of these that is usual. */
+typedef struct course {
+    double share, open, falls; /* of the round before; open: 0, there is none */
+} course;
+
+static void take_course(course *c, double share, double open)
 {
-    static const double LEAST_STEP = 0.25, LARGEST_STEP = 0x1p-12, MARGIN = 0.7;
-    double wanted = MARGIN * ratio, step = fmax(fmin(wanted * wanted, LEAST_STEP), LARGEST_STEP);
+    static const double LEAST = 0.4, MOST = 0.75;
+    if (c->open > 0 && share < c->share && open < c->open)
+        c->falls = fmin(fmax(csg_log(open / c->open) / csg_log(share / c->share), LEAST), MOST);
+    c->share = share;
+    c->open = open;
+}
+
+/* The next share. Cubes become more by its power of 2/3 at most. False: so many are not to be had. */
+static bool choose_share(rounds *r, const course *c, double ratio, uint64_t latest, uint64_t left)
+{
+    static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-12, MARGIN = 0.65;
+    double step = fmax(fmin(csg_pow(MARGIN * ratio, 1 / c->falls), LEAST_STEP), LARGEST_STEP);
     double more = (double)left / (double)latest, affordable = more * sqrt(more);
     if (!(affordable > 1 / LEAST_STEP))
         return false;
@@ -210,6 +225,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
     enum { VAIN = 2 };                 /* rounds that are not: rounding is what is left */
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
+    course so_far = {.falls = 0.5};
     double best = 0;
     int vain = 0;
     for (bool more = true; more && status == CSGM_OK;) {
@@ -229,8 +245,9 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
         } else if (counts.cubes > looked) {
             vain++;
         }
+        take_course(&so_far, r->share, 1 / ratio);
         more = ratio < 1 && vain < VAIN && counts.cubes < most_cubes &&
-               choose_share(r, ratio, latest, most_cubes - counts.cubes);
+               choose_share(r, &so_far, ratio, latest, most_cubes - counts.cubes);
     }
     return status;
 }

@@ -49,6 +49,7 @@ void csg_leaf_primitive(csg_leaf *l, const csg_affine *at, double factor, bool n
         primitive->pack(l, p, k);
         l->own_count = primitive->own_count;
     }
+    l->own_magnitude = l->magnitude;
     /* Lengths as the scene sees them: an own-frame value is multiplied by sigma at the end. */
     l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
 }
@@ -59,6 +60,44 @@ static double rounding_of(double magnitude)
     return 32 * (double)FLT_EPSILON * magnitude;
 }
 
+static double rounding_in(double value)
+{
+    return fabs(value - (double)(float)value);
+}
+
+static double norm_of_rounding(const double *values, int count)
+{
+    double square = 0;
+    for (int i = 0; i < count; i++)
+        square += rounding_in(values[i]) * rounding_in(values[i]);
+    return sqrt(square);
+}
+
+/* What floats make of the parameters (tape.h, off and turned). An own one, be it a length or a
+ * direction's part, moves values by its relative error times the leaf's lengths; those of a plane
+ * are its normal. The doubles have some units in the last place of their own. */
+static void find_rounding(const csg_leaf *l, float *off, float *turned)
+{
+    static const double OF_DOUBLES = 0x1p-46, UP = 1 + 1e-6;
+    bool is_plane = csg_op_has(l->op, CSG_TRAIT_LINEAR);
+    double size = fabs(l->sigma), here = rounding_in(l->raise), along = 0;
+    if (l->frame == CSG_FRAME_OFFSET) {
+        here += size * norm_of_rounding((double[]){l->offset.x, l->offset.y, l->offset.z}, 3);
+    } else {
+        here += size * norm_of_rounding(l->to_own.t, 3);
+        along += size * norm_of_rounding(&l->to_own.m[0][0], 9);
+    }
+    here += rounding_in(l->sigma) * l->own_magnitude;
+    if (is_plane)
+        along += size * norm_of_rounding(l->own, 3);
+    for (int i = is_plane ? 3 : 0; i < l->own_count; i++)
+        if (rounding_in(l->own[i]) > 0)
+            here += size * rounding_in(l->own[i]) / fabs(l->own[i]) * l->own_magnitude;
+    here += OF_DOUBLES * (l->magnitude + fabs(l->raise));
+    *off = (float)(here * UP);
+    *turned = (float)((along + OF_DOUBLES * size) * UP);
+}
+
 size_t csg_leaf_pack(const csg_leaf *l, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS])
 {
     size_t count = CSG_LEAF_FRAME;
@@ -66,6 +105,7 @@ size_t csg_leaf_pack(const csg_leaf *l, uint32_t color, float values[CSG_LEAF_MO
     values[CSG_LEAF_RAISE] = (float)l->raise;
     values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude + fabs(l->raise));
     values[CSG_LEAF_COLOR] = (float)color;
+    find_rounding(l, &values[CSG_LEAF_OFF], &values[CSG_LEAF_TURNED]);
     if (l->frame == CSG_FRAME_OFFSET) {
         values[count++] = (float)l->offset.x;
         values[count++] = (float)l->offset.y;

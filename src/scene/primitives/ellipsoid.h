@@ -275,4 +275,10 @@ static inline bool csg_ellipsoid_may_crease(const float *own, const float q[3], 
     return csg_band_meets(b, least * least / fmaxf(own[0], fmaxf(own[1], own[2])), INFINITY);
 }
 
+/* Its distance has no closed form. */
+static inline bool csg_ellipsoid_piece(const csg_piece_leaf *l, csg_piece *out)
+{
+    return false;
+}
+
 #endif

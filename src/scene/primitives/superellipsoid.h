@@ -140,4 +140,10 @@ static inline bool csg_superellipsoid_may_crease(const float *own, const float q
     return true;
 }
 
+/* Its powers have no bound on third derivatives at its planes of symmetry. */
+static inline bool csg_superellipsoid_piece(const csg_piece_leaf *l, csg_piece *out)
+{
+    return false;
+}
+
 #endif

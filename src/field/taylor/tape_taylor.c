@@ -1,0 +1,452 @@
+/* SPDX-License-Identifier: MIT
+ * Taylor models of tapes; see tape_taylor.h. A stack of operands, as the tape's own evaluation has
+ * one.
+ */
+#include "field/taylor/tape_taylor.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "scene/operators/blend.h"
+#include "scene/operators/blend_kinds.h"
+#include "scene/operators/fillet.h"
+#include "scene/primitives/curve.h"
+#include "scene/primitives/kinds.h"
+
+enum { NODES_MOST = 24 /* of a tape; more are not looked at */ };
+
+typedef struct operand {
+    csg_piece piece;
+    uint32_t node;   /* the last of its subtree */
+    bool has_slopes; /* of unit length */
+} operand;
+
+typedef struct walker {
+    const csg_tape *tape;
+    const double *c;
+    double radius;
+    bool with_slopes;            /* there are fillets */
+    bool signs[NODES_MOST];      /* of each node: nothing but its sign matters */
+    operand stack[NODES_MOST];
+    uint32_t top;
+} walker;
+
+static double least_of(const walker *w, const csg_taylor *a)
+{
+    return csg_taylor_least(a, w->radius);
+}
+
+static double most_of(const walker *w, const csg_taylor *a)
+{
+    return csg_taylor_most(a, w->radius);
+}
+
+/* ---- leaves ------------------------------------------------------------------------------------
+ */
+
+static void place(const walker *w, const csg_tape_node *leaf, csg_piece_leaf *l)
+{
+    const float *parameters = w->tape->parameters + leaf->parameters;
+    const float *frame = parameters + CSG_LEAF_FRAME;
+    bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
+    const csg_taylor *p[3];
+    for (int i = 0; i < 3; i++) {
+        csg_piece *q = &l->p[i];
+        memset(q, 0, sizeof *q);
+        q->f.value = is_offset ? w->c[i] - (double)frame[i] : (double)frame[9 + i];
+        for (int k = 0; k < 3; k++) {
+            q->f.slope[k] = is_offset ? i == k : (double)frame[3 * i + k];
+            q->f.value += is_offset ? 0 : q->f.slope[k] * w->c[k];
+            q->g[k].value = q->f.slope[k];
+        }
+        p[i] = &q->f;
+    }
+    l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+    l->radius = w->radius;
+    l->reach = csg_taylor_change_of(p, 3, w->radius).most;
+    l->with_slopes = w->with_slopes;
+}
+
+/* How far the value is off: by the parameters, and by the doubles that are computed with. */
+static double rounding_of(const walker *w, const float *parameters)
+{
+    static const double OF_DOUBLES = 0x1p-26 /* of the slack */, OF_PLACE = 0x1p-44;
+    double far = fabs(w->c[0]) + fabs(w->c[1]) + fabs(w->c[2]) + w->radius;
+    return (double)parameters[CSG_LEAF_OFF] + (double)parameters[CSG_LEAF_TURNED] * far +
+           OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
+}
+
+static bool push_leaf(walker *w, uint32_t index)
+{
+    const csg_tape_node *leaf = &w->tape->nodes[index];
+    const float *parameters = w->tape->parameters + leaf->parameters;
+    csg_piece_leaf l;
+    csg_piece own;
+    operand *o = &w->stack[w->top++];
+    if (leaf->warp || !csg_op_is_primitive(leaf->op) ||
+        csg_node_is_curve(csg_op_node_kind(leaf->op)))
+        return false;
+    place(w, leaf, &l);
+    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->piece(&l, &own))
+        return false;
+    o->piece = csg_piece_line(&l, (double)parameters[CSG_LEAF_RAISE],
+                              (double)parameters[CSG_LEAF_SIGMA], &own);
+    o->piece.f.error += rounding_of(w, parameters);
+    o->node = index;
+    o->has_slopes = w->with_slopes;
+    return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.cubic);
+}
+
+/* ---- operators of two --------------------------------------------------------------------------
+ */
+
+/* Which of two decides all over the ball: 0, 1, or -1, it is not the same everywhere. turn: 1 of a
+ * union, -1 of an intersection. Where only the sign matters an operand that is outside of a union
+ * decides nowhere. */
+static int decider(const walker *w, const operand *a, const operand *b, double turn, bool signs)
+{
+    csg_taylor d = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    if (csg_taylor_reach(&d, w->radius) < fabs(d.value))
+        return turn * d.value > 0 ? 0 : 1;
+    const csg_taylor *f[2] = {&a->piece.f, &b->piece.f};
+    for (int i = 0; i < 2 && signs; i++) {
+        bool is_hidden = turn > 0 ? most_of(w, f[i]) < 0 : least_of(w, f[i]) > 0;
+        bool is_all = turn > 0 ? least_of(w, f[i]) > 0 : most_of(w, f[i]) < 0;
+        if (is_hidden || is_all)
+            return is_hidden ? 1 - i : i;
+    }
+    return -1;
+}
+
+/* (a + b) / 2 + excess. */
+static void take_mean(const csg_taylor *a, const csg_taylor *b, double factor,
+                      const csg_taylor *excess, csg_taylor *out)
+{
+    csg_taylor sum = csg_taylor_sum(a, 1, b);
+    sum = csg_taylor_scaled(&sum, 0.5);
+    *out = csg_taylor_sum(&sum, factor, excess);
+}
+
+/* The blend of a and b of a union, turned: with x = a - b, |x| < support,
+ *   parabola   (a + b) / 2 + x^2 / n + n / 16
+ *   hyperbola  (a + b) / 2 + sqrt(x^2 + n) / 2
+ * (operators.md 2.1). */
+static bool blend_two(const walker *w, const csg_tape_node *node, const csg_taylor *a,
+                      const csg_taylor *b, double turn, csg_taylor *out)
+{
+    const float *parameters = w->tape->parameters + node->join_parameters;
+    double n = (double)parameters[CSG_OPERATOR_N];
+    csg_taylor x = csg_taylor_sum(a, -1, b), excess, constant;
+    const csg_taylor *const pair[2] = {&x, &constant};
+    switch (node->join_blend) {
+    case CSG_BLEND_PARABOLA:
+        excess = csg_taylor_square(&x, w->radius);
+        excess = csg_taylor_raised(csg_taylor_scaled(&excess, 1 / n), n / 16);
+        take_mean(a, b, turn, &excess, out);
+        return true;
+    case CSG_BLEND_HYPERBOLA:
+        constant = csg_taylor_constant(sqrt(n));
+        if (!csg_taylor_norm(pair, 2, w->radius, &excess))
+            return false;
+        take_mean(a, b, 0.5 * turn, &excess, out);
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool join_siblings(walker *w, uint32_t index)
+{
+    const csg_tape_node *node = &w->tape->nodes[index];
+    const float *parameters = w->tape->parameters + node->join_parameters;
+    operand *a = &w->stack[w->top - 2], *b = a + 1;
+    double turn = node->join == CSG_JOIN_UNION ? 1 : -1;
+    double support = (double)parameters[CSG_OPERATOR_SUPPORT];
+    bool is_sharp = node->join_blend == CSG_BLEND_SHARP, signs = w->signs[index];
+    w->top--;
+    if (is_sharp || (node->join_blend == CSG_BLEND_ORTHOGONAL && signs)) {
+        int which = decider(w, a, b, turn, signs);
+        if (which == 1)
+            *a = *b;
+        return which >= 0;
+    }
+    if (node->join_blend != CSG_BLEND_PARABOLA && node->join_blend != CSG_BLEND_HYPERBOLA)
+        return false;
+    csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    double reach = csg_taylor_reach(&x, w->radius), apart = fabs(x.value);
+    if (apart - reach > support) {
+        if (turn * x.value < 0)
+            *a = *b;
+        return true;
+    }
+    a->has_slopes = false;
+    return apart + reach < support && blend_two(w, node, &a->piece.f, &b->piece.f, turn, &a->piece.f);
+}
+
+/* ---- round -------------------------------------------------------------------------------------
+ */
+
+/* Largest first. */
+static void sort_operands(const operand *of, uint32_t count, double turn, uint32_t *order)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t at = i;
+        for (; at > 0 && turn * of[order[at - 1]].piece.f.value < turn * of[i].piece.f.value; at--)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+}
+
+/* Of m operands that all touch: G = w + mean - sqrt(w^2 / m - mean of (f - mean)^2), turned. */
+static bool find_level(const walker *w, const operand *of, const uint32_t *order, uint32_t m,
+                       double width, double turn, csg_taylor *out)
+{
+    csg_taylor mean = csg_taylor_constant(0);
+    csg_taylor under = csg_taylor_constant(width * width / m), root;
+    if (m == 1) {
+        *out = of[order[0]].piece.f;
+        return true;
+    }
+    for (uint32_t i = 0; i < m; i++)
+        mean = csg_taylor_sum(&mean, 1.0 / m, &of[order[i]].piece.f);
+    for (uint32_t i = 0; i < (m == 2 ? 1 : m); i++) {
+        csg_taylor d = csg_taylor_sum(&of[order[i]].piece.f, -1, &mean);
+        d = csg_taylor_square(&d, w->radius);
+        under = csg_taylor_sum(&under, m == 2 ? -1.0 : -1.0 / m, &d);
+    }
+    if (!csg_taylor_root(&under, w->radius, &root))
+        return false;
+    *out = csg_taylor_raised(csg_taylor_sum(&mean, -turn, &root), turn * width);
+    return true;
+}
+
+/* By its operands' values at the centre, those touch that stand first; all over the ball they do if
+ * w + f - G > 0 for them and < 0 for all others. */
+static bool combine_round(walker *w, const csg_tape_node *node)
+{
+    operand *of = &w->stack[w->top - node->arity];
+    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, sum = 0, squares = 0, level = 0;
+    uint32_t order[NODES_MOST], m = 0;
+    csg_taylor out;
+    sort_operands(of, node->arity, turn, order);
+    for (; m < node->arity; m++) {
+        double f = turn * of[order[m]].piece.f.value;
+        if (m && !(width + f - level > 0))
+            break;
+        sum += f;
+        squares += f * f;
+        double mean = sum / (m + 1), rest = width * width - (squares - sum * mean);
+        level = width + mean - sqrt(fmax(rest, 0) / (m + 1));
+    }
+    if (!find_level(w, of, order, m, width, turn, &out))
+        return false;
+    for (uint32_t i = 0; i < node->arity; i++) {
+        csg_taylor d = csg_taylor_sum(&of[order[i]].piece.f, -1, &out);
+        double touches = width + turn * d.value, reach = csg_taylor_reach(&d, w->radius);
+        if (i < m ? !(touches > reach) && m > 1 : !(touches < -reach))
+            return false;
+    }
+    w->top -= node->arity - 1;
+    if (m == 1) {
+        of[0] = of[order[0]];
+        return true;
+    }
+    of[0].piece.f = out;
+    of[0].has_slopes = false;
+    return true;
+}
+
+/* ---- fillets -----------------------------------------------------------------------------------
+ */
+
+/* 1 - cos of the angle between two unit gradients. False: they are none. */
+static bool find_turn(const walker *w, const operand *a, const operand *b, csg_taylor *out)
+{
+    static const double UNIT = 1e-6, ROUNDING = 0x1p-23 /* of directions by floats */;
+    const operand *both[2] = {a, b};
+    double off = ROUNDING;
+    for (int i = 0; i < 2; i++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++)
+            square += both[i]->piece.g[k].value * both[i]->piece.g[k].value;
+        if (!both[i]->has_slopes || !(fabs(square - 1) < UNIT))
+            return false;
+        off += fabs(square - 1);
+    }
+    *out = csg_taylor_constant(1);
+    for (int k = 0; k < 3; k++) {
+        csg_taylor p = csg_taylor_product(&a->piece.g[k], &b->piece.g[k], w->radius);
+        *out = csg_taylor_sum(out, -1, &p);
+    }
+    out->error += off;
+    return true;
+}
+
+/* With d the turn and x the difference of two operands, of a union:
+ *   (a + b) / 2 + r - sqrt((2 - d) (2 r^2 - x^2 / d)) / 2     where r d > |x|
+ * (operators.md 16). */
+static bool fillet_two(const walker *w, const csg_taylor *a, const csg_taylor *b,
+                       const csg_taylor *d, double r, double turn, csg_taylor *out)
+{
+    csg_taylor x = csg_taylor_sum(a, -1, b), inverse, under, root;
+    csg_taylor rest = csg_taylor_raised(csg_taylor_scaled(d, -1), 2);
+    x = csg_taylor_square(&x, w->radius);
+    if (!csg_taylor_inverse(d, w->radius, &inverse))
+        return false;
+    under = csg_taylor_product(&x, &inverse, w->radius);
+    under = csg_taylor_raised(csg_taylor_scaled(&under, -1), 2 * r * r);
+    under = csg_taylor_product(&rest, &under, w->radius);
+    if (!csg_taylor_root(&under, w->radius, &root))
+        return false;
+    take_mean(a, b, -0.5 * turn, &root, out);
+    *out = csg_taylor_raised(*out, turn * r);
+    return true;
+}
+
+/* Of the planes at which the fillet ends: none is nearer than its surface (0), one decides (1, in
+ * *out), or it is not the same everywhere (-1). */
+static int find_end(const walker *w, const csg_tape_node *node, const operand *of,
+                    const uint32_t pair[2], double turn, csg_taylor *out)
+{
+    const csg_tape *tape = w->tape;
+    int ended = 0;
+    for (uint32_t p = node->arity - node->planes; p < node->arity; p++) {
+        const float *parameters = tape->parameters;
+        uint32_t number = tape->nodes[of[p].node].join_parameters;
+        double beyond = -INFINITY;
+        for (int i = 0; i < 2; i++)
+            beyond = fmax(beyond, (double)parameters[tape->nodes[of[pair[i]].node].join_parameters +
+                                                     number]);
+        if (!isfinite(beyond))
+            continue;
+        csg_taylor inside = csg_taylor_raised(of[p].piece.f, turn * beyond);
+        csg_taylor over = csg_taylor_sum(&inside, -1, out);
+        double reach = csg_taylor_reach(&over, w->radius) + 1e-6 * fabs(beyond);
+        if (turn * over.value > reach)
+            continue;
+        if (!(turn * over.value < -reach))
+            return -1;
+        *out = inside;
+        out->error += 1e-6 * fabs(beyond);
+        ended = 1;
+    }
+    return ended;
+}
+
+/* The largest operand alone, or two that blend and no third one near. */
+static bool combine_fillet(walker *w, const csg_tape_node *node)
+{
+    const float *parameters = w->tape->parameters + node->parameters;
+    operand *of = &w->stack[w->top - node->arity];
+    double r = (double)parameters[CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_FILLET_UNION ? 1 : -1;
+    uint32_t order[NODES_MOST], count = node->arity - node->planes;
+    csg_taylor d, x, out;
+    if (parameters[CSG_FILLET_IS_SKEWED] != 0 || !count)
+        return false;
+    w->top -= node->arity - 1;
+    sort_operands(of, count, turn, order);
+    const operand *a = &of[order[0]];
+    for (uint32_t i = count > 1 ? 2 : 1; i < count; i++) {
+        x = csg_taylor_sum(&a->piece.f, -1, &of[order[i]].piece.f);
+        if (!(turn * x.value - csg_taylor_reach(&x, w->radius) > 2 * r))
+            return false;
+    }
+    if (count > 1) {
+        const operand *b = &of[order[1]];
+        x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+        double apart = fabs(x.value), reach = csg_taylor_reach(&x, w->radius);
+        bool is_alone = turn * x.value - reach > CSG_FILLET_PAIR_REACH * r;
+        if (!is_alone) {
+            if (!find_turn(w, a, b, &d) || !(most_of(w, &d) < CSG_FILLET_FADE))
+                return false;
+            is_alone = turn * x.value - reach > fmax(r * most_of(w, &d), 0);
+            if (!is_alone && !(apart + reach < r * least_of(w, &d)))
+                return false;
+        }
+        if (!is_alone) {
+            const uint32_t pair[2] = {order[0], order[1]};
+            if (!fillet_two(w, &a->piece.f, &b->piece.f, &d, r, turn, &out))
+                return false;
+            int ended = find_end(w, node, of, pair, turn, &out);
+            for (int i = 0; i < 2 && ended > 0; i++) {
+                csg_taylor over = csg_taylor_sum(&out, -1, &of[pair[i]].piece.f);
+                if (!(turn * over.value > csg_taylor_reach(&over, w->radius)))
+                    return false; /* where it ends below an operand that one decides */
+            }
+            of[0].piece.f = out;
+            of[0].has_slopes = false;
+            return ended >= 0;
+        }
+    }
+    of[0] = *a;
+    return true;
+}
+
+/* ---- the walk ----------------------------------------------------------------------------------
+ */
+
+/* A node's children matter by their signs alone where it does and joins them sharply. */
+static void find_signs(walker *w)
+{
+    const csg_tape_node *nodes = w->tape->nodes;
+    memset(w->signs, 0, sizeof w->signs);
+    w->signs[w->tape->count - 1] = true;
+    for (uint32_t i = w->tape->count; i-- > 0;) {
+        if (!w->signs[i] || (nodes[i].op != CSG_OP_UNION && nodes[i].op != CSG_OP_INTERSECTION))
+            continue;
+        bool all = true;
+        uint32_t end = i + 1 - nodes[i].size;
+        for (uint32_t k = i; k > end; k -= nodes[k - 1].size) {
+            const csg_tape_node *child = &nodes[k - 1];
+            bool is_sharp = child->join_blend == CSG_BLEND_SHARP;
+            if (child->join && child->join_blend == CSG_BLEND_ORTHOGONAL) {
+                float n = w->tape->parameters[child->join_parameters + CSG_OPERATOR_N];
+                is_sharp = !(n > 0) && !(n < 0);
+            }
+            all = all && (!child->join || is_sharp);
+        }
+        for (uint32_t k = i; k > end && all; k -= nodes[k - 1].size)
+            w->signs[k - 1] = true;
+    }
+}
+
+static bool walk(walker *w)
+{
+    for (uint32_t i = 0; i < w->tape->count; i++) {
+        const csg_tape_node *node = &w->tape->nodes[i];
+        bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
+        if (csg_op_is_leaf(node->op))
+            known = push_leaf(w, i);
+        else if (csg_op_is_round(node->op))
+            known = combine_round(w, node);
+        else if (csg_op_is_fillet(node->op))
+            known = combine_fillet(w, node);
+        if (!known)
+            return false;
+        w->stack[w->top - 1].node = i;
+        if (node->join && !join_siblings(w, i))
+            return false;
+    }
+    return w->top == 1;
+}
+
+bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg_taylor *out)
+{
+    walker w; /* not filled: it is large */
+    if (!tape->count || tape->count > NODES_MOST)
+        return false;
+    w.tape = tape;
+    w.c = c;
+    w.radius = radius;
+    w.with_slopes = false;
+    w.top = 0;
+    for (uint32_t i = 0; i < tape->count; i++)
+        w.with_slopes |= csg_op_is_fillet(tape->nodes[i].op);
+    find_signs(&w);
+    if (!walk(&w))
+        return false;
+    *out = w.stack[0].piece.f;
+    return isfinite(out->value + out->error + out->cubic);
+}

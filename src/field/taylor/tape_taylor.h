@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ * A tape's field in a ball as one Taylor model of second order (base/taylor.h), where the field is
+ * smooth there: its leaves by their smooth pieces (scene/primitives/piece.h), its blends as
+ * functions of these.
+ */
+#ifndef CSG_FIELD_TAPE_TAYLOR_H
+#define CSG_FIELD_TAPE_TAYLOR_H
+
+#include "base/taylor.h"
+#include "field/tape.h"
+
+/* Around c, in the tape's frame, with the rounding of the tape's parameters: what is enclosed is
+ * the scene's field, or one that has its sign everywhere in the ball. For a tape that is valid
+ * there. False: it is not smooth there, or not known to be. */
+bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg_taylor *out);
+
+#endif

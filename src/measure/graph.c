@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: MIT
+ * Graphs; see graph.h. With z along the axis, turned so that the solid is below, the model's
+ * polynomial F falls with z all over the cube, at least as fast as `fall`. Over a square of its
+ * face the surface is
+ *     z(x, y) = z_0 + g . d + d . Z d / 2 + at most third |d|^3,
+ * with F(x_0, y_0, z_0) = 0 and the derivatives of the implicit function, and the field's own
+ * surface is no farther from that along z than what the model is off, over `fall`.
+ */
+#include "measure/graph.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 2 /* squares along a side of the face */, CORNERS = 4, MOST_CLIPPED = CORNERS + 1 };
+
+/* The polynomial with its axes in that order. */
+typedef struct polynomial {
+    double value, s[3], h[3][3];
+} polynomial;
+
+typedef struct square {
+    double at[2], half;
+    double z, g[2], bend[3]; /* xx, yy, xy */
+    double reach;            /* |d . Z d / 2| is no more */
+    double error, mean;      /* along z: most, and the mean's bound */
+} square;
+
+typedef struct graph {
+    const csg_taylor *f;
+    polynomial p;
+    double half, fall, third;
+    csg_graph *out;
+} graph;
+
+static const int AT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}}; /* in a model's bends */
+
+/* Returns the axis that becomes the last. */
+static int order_axes(const csg_taylor *f, polynomial *p)
+{
+    int up = 0;
+    for (int k = 1; k < 3; k++)
+        up = fabs(f->slope[k]) > fabs(f->slope[up]) ? k : up;
+    const int axes[3] = {(up + 1) % 3, (up + 2) % 3, up};
+    double turn = f->slope[up] > 0 ? -1 : 1;
+    p->value = f->value;
+    for (int i = 0; i < 3; i++) {
+        p->s[i] = (i == 2 ? turn : 1) * f->slope[axes[i]];
+        for (int k = 0; k < 3; k++)
+            p->h[i][k] = ((i == 2) != (k == 2) ? turn : 1) * f->bend[AT[axes[i]][axes[k]]];
+    }
+    return up;
+}
+
+/* Roots are looked for up to twice the half edge. False: F may not fall there. The third derivative
+ * of the implicit function of a polynomial of second order, along a unit vector u with q the
+ * tangent's length: z_uuu = -3 (F_z)_u z_uu / F_z, |(F_z)_u| <= |H_z| q, |z_uu| <= |H| q^2 / fall.
+ */
+static bool find_fall(graph *g)
+{
+    static const double LEAST = 0.25;
+    const polynomial *p = &g->p;
+    double h = g->half, steep = fabs(p->s[2]), gradient = 0, row = 0, all = 0;
+    g->fall = steep - (fabs(p->h[2][0]) + fabs(p->h[2][1]) + 2 * fabs(p->h[2][2])) * h;
+    if (!(g->fall > LEAST * steep))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        double most = fabs(p->s[i]) + (fabs(p->h[i][0]) + fabs(p->h[i][1])) * h +
+                      2 * fabs(p->h[i][2]) * h;
+        gradient += i < 2 ? most * most : 0;
+        row += p->h[2][i] * p->h[2][i];
+        for (int k = 0; k < 3; k++)
+            all += p->h[i][k] * p->h[i][k];
+    }
+    double tangent = sqrt(1 + gradient / (g->fall * g->fall));
+    g->third = 0.5 * sqrt(row * all) * tangent * tangent * tangent / (g->fall * g->fall);
+    return isfinite(g->third);
+}
+
+static double value_at(const polynomial *p, double x, double y, double z)
+{
+    const double at[3] = {x, y, z};
+    double sum = p->value;
+    for (int i = 0; i < 3; i++) {
+        double row = p->s[i];
+        for (int k = 0; k < 3; k++)
+            row += 0.5 * p->h[i][k] * at[k];
+        sum += row * at[i];
+    }
+    return sum;
+}
+
+/* Over the square at this height: 1, F is more than `room` all over; -1, less than -room; else 0. */
+static int sign_at(const polynomial *p, const square *q, double z, double room)
+{
+    double value = value_at(p, q->at[0], q->at[1], z), reach = room;
+    for (int i = 0; i < 2; i++) {
+        double slope = p->s[i] + p->h[i][0] * q->at[0] + p->h[i][1] * q->at[1] + p->h[i][2] * z;
+        reach += fabs(slope) * q->half;
+        for (int k = 0; k < 2; k++)
+            reach += 0.5 * fabs(p->h[i][k]) * q->half * q->half;
+    }
+    return value > reach ? 1 : value < -reach ? -1 : 0;
+}
+
+/* The implicit function at the square's centre. False: its root is too far. */
+static bool expand(const graph *g, square *q)
+{
+    const polynomial *p = &g->p;
+    double x = q->at[0], y = q->at[1], a = p->h[2][2];
+    double b = p->s[2] + p->h[2][0] * x + p->h[2][1] * y, c = value_at(p, x, y, 0);
+    double under = b * b - 2 * a * c;
+    if (!(under > 0))
+        return false;
+    q->z = 2 * c / (sqrt(under) - b); /* b < 0 */
+    if (!(fabs(q->z) < 2 * g->half))
+        return false;
+    double down = b + a * q->z, second[3];
+    for (int i = 0; i < 2; i++)
+        q->g[i] = -(p->s[i] + p->h[i][0] * x + p->h[i][1] * y + p->h[i][2] * q->z) / down;
+    for (int n = 0; n < 3; n++) {
+        int i = n == 1 ? 1 : 0, k = n == 0 ? 0 : 1;
+        second[n] = p->h[i][k] + p->h[i][2] * q->g[k] + p->h[k][2] * q->g[i] + a * q->g[i] * q->g[k];
+        q->bend[n] = -second[n] / down;
+    }
+    double norm = sqrt(q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] +
+                       2 * q->bend[2] * q->bend[2]);
+    q->reach = norm * q->half * q->half * (1 + 1e-12);
+    return true;
+}
+
+/* How far the surface may be from the square's parabola along z: by the third derivatives, and by
+ * what the model is off. Where that is less than half of the polynomial's own farthest root all over
+ * the cube, no root of the field is farther than half as far again, and what the model is off there
+ * counts alone. Means over the square: |x|^3 is no more than its largest square times the root of
+ * the mean square; that of |d|^3 is at most 0.6223^(3/4) half^3 by the mean of |d|^4. */
+static void find_errors(const graph *g, square *q, double room)
+{
+    static const double MEAN_CUBE = 0.701, MOST_CUBE = 2.8285;
+    const csg_taylor *f = g->f;
+    double h = q->half, third = g->third * h * h * h;
+    double far = fabs(q->z) + (fabs(q->g[0]) + fabs(q->g[1])) * h + q->reach + MOST_CUBE * third;
+    double z = room < 0.5 * far * g->fall ? fmin(1.5 * far, g->half) : g->half;
+    double most = z * z, mean = z * z + 2.0 / 3 * h * h;
+    for (int i = 0; i < 2; i++) {
+        most += (fabs(q->at[i]) + h) * (fabs(q->at[i]) + h);
+        mean += q->at[i] * q->at[i];
+    }
+    q->error = (f->error + f->cubic * most * sqrt(most)) / g->fall + MOST_CUBE * third;
+    q->mean = (f->error + f->cubic * most * sqrt(mean)) / g->fall + MEAN_CUBE * third;
+}
+
+/* ---- parts of a square -------------------------------------------------------------------------
+ */
+
+typedef struct part {
+    double area, line, bent; /* integrals of 1, of the linear part, of that and the bends */
+} part;
+
+static double line_at(const square *q, double value, const double at[2])
+{
+    return value + q->g[0] * at[0] + q->g[1] * at[1];
+}
+
+static double bend_at(const square *q, const double at[2])
+{
+    return 0.5 * (q->bend[0] * at[0] * at[0] + q->bend[1] * at[1] * at[1]) +
+           q->bend[2] * at[0] * at[1];
+}
+
+/* Where value + g . d > 0. */
+static part find_part(const square *q, double value)
+{
+    static const int SIGN[CORNERS][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    double polygon[MOST_CLIPPED][2], values[CORNERS], corners[CORNERS][2];
+    int count = 0;
+    part sum = {0};
+    for (int i = 0; i < CORNERS; i++) {
+        for (int k = 0; k < 2; k++)
+            corners[i][k] = SIGN[i][k] * q->half;
+        values[i] = line_at(q, value, corners[i]);
+    }
+    for (int i = 0; i < CORNERS; i++) {
+        const double *from = corners[i], *to = corners[(i + 1) % CORNERS];
+        double a = values[i], b = values[(i + 1) % CORNERS], share = a / (a - b);
+        if (a > 0 && count < MOST_CLIPPED)
+            memcpy(polygon[count++], from, sizeof polygon[0]);
+        if ((a > 0) == (b > 0) || count >= MOST_CLIPPED)
+            continue;
+        for (int k = 0; k < 2; k++)
+            polygon[count][k] = from[k] + share * (to[k] - from[k]);
+        count++;
+    }
+    for (int i = 1; i + 1 < count; i++) {
+        const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
+        double area = 0.5 * ((t[1][0] - t[0][0]) * (t[2][1] - t[0][1]) -
+                             (t[1][1] - t[0][1]) * (t[2][0] - t[0][0]));
+        sum.area += area;
+        for (int n = 0; n < 3; n++) {
+            const double *a = t[n], *b = t[(n + 1) % 3];
+            const double middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+            double line = line_at(q, value, middle);
+            sum.line += area / 3 * line;
+            sum.bent += area / 3 * (line + bend_at(q, middle));
+        }
+    }
+    return sum;
+}
+
+/* The integral of max(z - level, 0), and what the bends leave open of it: with a the linear part
+ * and b the bends, max(a + b, 0) is max(a, 0) + b [a > 0] but for max(|b| - |a|, 0), whose integral
+ * is that of a tent. */
+static double part_above(const square *q, double level, double *open)
+{
+    double value = q->z - level, line = (fabs(q->g[0]) + fabs(q->g[1])) * q->half;
+    double area = 4 * q->half * q->half;
+    if (value + line + q->reach <= 0)
+        return 0;
+    if (value - line - q->reach >= 0)
+        return area * (value + (q->bend[0] + q->bend[1]) * q->half * q->half / 6);
+    part here = find_part(q, value), more = find_part(q, value + q->reach),
+         less = find_part(q, value - q->reach);
+    *open += fmax(more.line - 2 * here.line + less.line, 0);
+    return here.bent;
+}
+
+/* ---- the cube ----------------------------------------------------------------------------------
+ */
+
+/* How much the plane's half space has above or below that height of the square's columns. */
+static double plane_over(const graph *g, const square *q, double turn, double level)
+{
+    const polynomial *p = &g->p;
+    double steep = fabs(p->s[2]);
+    double z = (p->value + p->s[0] * q->at[0] + p->s[1] * q->at[1]) / steep;
+    double line = (fabs(p->s[0]) + fabs(p->s[1])) / steep * q->half;
+    return fmin(fmax(turn * (z - level) + line, 0), 2 * g->half);
+}
+
+static void add_whole(graph *g, const square *q, int sign)
+{
+    double area = 4 * q->half * q->half;
+    if (sign > 0) {
+        g->out->volume += area * 2 * g->half;
+        g->out->gained += area * plane_over(g, q, -1, g->half);
+    } else {
+        g->out->lost += area * plane_over(g, q, 1, -g->half);
+    }
+}
+
+/* The solid's columns differ from the half space's by no more than the surfaces do. */
+static void add_difference(graph *g, const square *q)
+{
+    const polynomial *p = &g->p;
+    double steep = fabs(p->s[2]), area = 4 * q->half * q->half, reach = q->reach + q->error;
+    double middle = q->z - (p->value + p->s[0] * q->at[0] + p->s[1] * q->at[1]) / steep;
+    for (int i = 0; i < 2; i++)
+        reach += fabs(q->g[i] - p->s[i] / steep) * q->half;
+    g->out->gained += area * fmax(reach + middle, 0);
+    g->out->lost += area * fmax(reach - middle, 0);
+}
+
+static bool add_square(graph *g, square *q)
+{
+    double h = g->half, most = 3 * h * h, room = g->f->error + g->f->cubic * most * sqrt(most);
+    if (sign_at(&g->p, q, h, room) > 0 || sign_at(&g->p, q, -h, room) < 0) {
+        add_whole(g, q, sign_at(&g->p, q, h, room) > 0 ? 1 : -1);
+        return true;
+    }
+    if (!expand(g, q))
+        return false;
+    find_errors(g, q, room);
+    double open = 0, area = 4 * q->half * q->half, beyond = q->reach + q->error;
+    double line = (fabs(q->g[0]) + fabs(q->g[1])) * q->half + beyond;
+    g->out->volume += part_above(q, -h, &open) - part_above(q, h, &open);
+    if (q->z - line > -h && q->z + line < h) {
+        g->out->error += area * q->mean + open;
+    } else {
+        double touched = find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
+        g->out->error += fmin(area * q->mean, fmax(touched, 0) * q->error) + open;
+    }
+    add_difference(g, q);
+    return true;
+}
+
+bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out)
+{
+    graph g = {.f = f, .half = half, .out = out};
+    double whole = 8 * half * half * half;
+    out->volume = out->error = out->gained = out->lost = 0;
+    order_axes(f, &g.p);
+    if (!find_fall(&g))
+        return false;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        square q = {.half = half / SIDE};
+        q.at[0] = (2 * (i % SIDE) + 1) * q.half - half;
+        q.at[1] = (2 * (i / SIDE) + 1) * q.half - half;
+        if (!add_square(&g, &q))
+            return false;
+    }
+    csg_cut_cube(half, f->value, f->slope, out->plane);
+    out->error = fmin(out->error * (1 + 1e-9), whole);
+    out->gained = fmin(out->gained * (1 + 1e-9), whole);
+    out->lost = fmin(out->lost * (1 + 1e-9), whole);
+    return isfinite(out->volume + out->error + out->gained + out->lost);
+}
+
+/* The model on the face, as one that does not depend on the axis. */
+static csg_taylor on_face(const csg_taylor *f, double at, int axis)
+{
+    csg_taylor out = *f;
+    out.value += (f->slope[axis] + 0.5 * f->bend[AT[axis][axis]] * at) * at;
+    for (int k = 0; k < 3; k++)
+        out.slope[k] += f->bend[AT[axis][k]] * at;
+    out.slope[axis] = 0;
+    for (int k = 0; k < 3; k++)
+        out.bend[AT[axis][k]] = 0;
+    return out;
+}
+
+/* A part of the cube's face over each piece of the face's own side, divided by how wide it is along
+ * the axis: it is the same everywhere along that, and farthest from the centre at the face. */
+bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double *area,
+                    double *error)
+{
+    const csg_taylor face = on_face(f, side * half, axis);
+    csg_graph sum = {.volume = 0};
+    graph g = {.f = &face, .half = half, .out = &sum};
+    int up = order_axes(&face, &g.p), along = (up + 1) % 3 == axis ? 0 : 1;
+    double piece = half / SIDE, whole = 4 * half * half;
+    if (up == axis || !find_fall(&g))
+        return false;
+    for (int i = 0; i < SIDE; i++) {
+        square q = {.half = piece};
+        q.at[along] = half;
+        q.at[1 - along] = (2 * i + 1) * piece - half;
+        if (!add_square(&g, &q))
+            return false;
+    }
+    *area = sum.volume / (2 * piece);
+    *error = fmin(sum.error / (2 * piece) * (1 + 1e-9), whole);
+    return isfinite(*area + *error);
+}

@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ * The solid in a cube by a Taylor model of its field: along the axis that the surface faces most it
+ * is a graph over the cube's face, and what is below is found with errors of fourth order where
+ * planes (halves.h) leave sheets of second order.
+ */
+#ifndef CSG_MEASURE_GRAPH_H
+#define CSG_MEASURE_GRAPH_H
+
+#include "base/taylor.h"
+#include "measure/cut.h"
+
+typedef struct csg_graph {
+    double volume, error; /* the solid's in the cube is no farther from it */
+    /* Of the half space at the model's plane, around the cube's centre; the solid is that, more by
+     * parts whose volumes add up to `gained` at most, less by `lost`. */
+    double plane[CSG_INTEGRALS], gained, lost;
+} csg_graph;
+
+/* f: in the ball around the cube. False: the surface may not be a graph there. */
+bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out);
+
+/* The same of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
+ * solid, within *error of *area. False: the surface may not be a graph there. */
+bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double *area,
+                    double *error);
+
+#endif
