@@ -17,7 +17,7 @@ PARTS = {
     "outline": ["letters", "svg", "dxf", "heights"],
     "scene": ["formula", "primitives", "operators", "boxes", "tree", "lazy", "outlines"],
     "lang": ["parse", "evaluate", "functions", "modules", "parameters", "edit"],
-    "field": ["kernels", "gradients", "prune", "compile", "cones"],
+    "field": ["kernels", "gradients", "prune", "compile", "cones", "taylor"],
     "grid": ["octree", "adaptive", "certify"],
     "mesh": ["marching", "features", "remesh", "adaptive", "distance", "reshape", "own", "foreign", "pipeline"],
     "io": ["text", "formats", "gltf", "threemf", "drawings", "layers"],

@@ -199,10 +199,8 @@ bool csg_taylor_inverse(const csg_taylor *a, double r, csg_taylor *out)
 csg_taylor csg_taylor_product(const csg_taylor *a, const csg_taylor *b, double r)
 {
     const csg_taylor *const u[2] = {a, b};
-    const csg_taylor_outer o = {.value = a->value * b->value,
-                                .slope = {b->value, a->value},
-                                .bend = {0, 1, 0},
-                                .norm = 1};
+    const csg_taylor_outer o = {
+        .value = a->value * b->value, .slope = {b->value, a->value}, .bend = {0, 1, 0}, .norm = 1};
     csg_taylor_change change = csg_taylor_change_of(u, 2, r);
     return csg_taylor_compose(&o, u, 2, &change, r);
 }

@@ -206,8 +206,7 @@ static void find_faces(const csg_measure_cube *q, const csg_halves *halves, bool
 {
     csg_taylor f;
     double half = q->half, whole = face_of(half), area, error;
-    bool is_smooth =
-        is_one && csg_tape_taylor(&q->tape, q->c, csg_enclosure_radius(half), &f);
+    bool is_smooth = is_one && csg_tape_taylor(&q->tape, q->c, csg_enclosure_radius(half), &f);
     for (int i = 0; i < FACES; i++) {
         int axis = i / 2, side = i & 1 ? 1 : -1;
         if (is_smooth && csg_graph_face(&f, half, axis, side, &area, &error))

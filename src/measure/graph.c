@@ -64,8 +64,8 @@ static bool find_fall(graph *g)
     if (!(g->fall > LEAST * steep))
         return false;
     for (int i = 0; i < 3; i++) {
-        double most = fabs(p->s[i]) + (fabs(p->h[i][0]) + fabs(p->h[i][1])) * h +
-                      2 * fabs(p->h[i][2]) * h;
+        double most =
+            fabs(p->s[i]) + (fabs(p->h[i][0]) + fabs(p->h[i][1])) * h + 2 * fabs(p->h[i][2]) * h;
         gradient += i < 2 ? most * most : 0;
         row += p->h[2][i] * p->h[2][i];
         for (int k = 0; k < 3; k++)
@@ -89,7 +89,8 @@ static double value_at(const polynomial *p, double x, double y, double z)
     return sum;
 }
 
-/* Over the square at this height: 1, F is more than `room` all over; -1, less than -room; else 0. */
+/* Over the square at this height: 1, F is more than `room` all over; -1, less than -room; else 0.
+ */
 static int sign_at(const polynomial *p, const square *q, double z, double room)
 {
     double value = value_at(p, q->at[0], q->at[1], z), reach = room;
@@ -119,20 +120,21 @@ static bool expand(const graph *g, square *q)
         q->g[i] = -(p->s[i] + p->h[i][0] * x + p->h[i][1] * y + p->h[i][2] * q->z) / down;
     for (int n = 0; n < 3; n++) {
         int i = n == 1 ? 1 : 0, k = n == 0 ? 0 : 1;
-        second[n] = p->h[i][k] + p->h[i][2] * q->g[k] + p->h[k][2] * q->g[i] + a * q->g[i] * q->g[k];
+        second[n] =
+            p->h[i][k] + p->h[i][2] * q->g[k] + p->h[k][2] * q->g[i] + a * q->g[i] * q->g[k];
         q->bend[n] = -second[n] / down;
     }
-    double norm = sqrt(q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] +
-                       2 * q->bend[2] * q->bend[2]);
+    double norm =
+        sqrt(q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] + 2 * q->bend[2] * q->bend[2]);
     q->reach = norm * q->half * q->half * (1 + 1e-12);
     return true;
 }
 
 /* How far the surface may be from the square's parabola along z: by the third derivatives, and by
- * what the model is off. Where that is less than half of the polynomial's own farthest root all over
- * the cube, no root of the field is farther than half as far again, and what the model is off there
- * counts alone. Means over the square: |x|^3 is no more than its largest square times the root of
- * the mean square; that of |d|^3 is at most 0.6223^(3/4) half^3 by the mean of |d|^4. */
+ * what the model is off. Where that is less than half of the polynomial's own farthest root all
+ * over the cube, no root of the field is farther than half as far again, and what the model is off
+ * there counts alone. Means over the square: |x|^3 is no more than its largest square times the
+ * root of the mean square; that of |d|^3 is at most 0.6223^(3/4) half^3 by the mean of |d|^4. */
 static void find_errors(const graph *g, square *q, double room)
 {
     static const double MEAN_CUBE = 0.701, MOST_CUBE = 2.8285;
@@ -275,7 +277,8 @@ static bool add_square(graph *g, square *q)
     if (q->z - line > -h && q->z + line < h) {
         g->out->error += area * q->mean + open;
     } else {
-        double touched = find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
+        double touched =
+            find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
         g->out->error += fmin(area * q->mean, fmax(touched, 0) * q->error) + open;
     }
     add_difference(g, q);

@@ -106,9 +106,9 @@ static void add_around(sum *s, const csg_measure_cube *q, double around_center[C
     }
 }
 
-/* Where the field is smooth in the cube: the half space's integrals, but for what the surface leaves
- * on either side of its plane. Returns what it leaves open; INFINITY: it is not smooth, or may not
- * be. */
+/* Where the field is smooth in the cube: the half space's integrals, but for what the surface
+ * leaves on either side of its plane. Returns what it leaves open; INFINITY: it is not smooth, or
+ * may not be. */
 static double settle_smooth(const csg_measure_cube *q, sum *s)
 {
     csg_taylor f;

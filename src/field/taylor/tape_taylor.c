@@ -16,7 +16,7 @@
 enum { NODES_MOST = 24 /* of a tape; more are not looked at */ };
 
 typedef struct operand {
-    csg_piece piece;
+    csg_smooth piece;
     uint32_t node;   /* the last of its subtree */
     bool has_slopes; /* of unit length */
 } operand;
@@ -25,8 +25,8 @@ typedef struct walker {
     const csg_tape *tape;
     const double *c;
     double radius;
-    bool with_slopes;            /* there are fillets */
-    bool signs[NODES_MOST];      /* of each node: nothing but its sign matters */
+    bool with_slopes;       /* there are fillets */
+    bool signs[NODES_MOST]; /* of each node: nothing but its sign matters */
     operand stack[NODES_MOST];
     uint32_t top;
 } walker;
@@ -44,14 +44,14 @@ static double most_of(const walker *w, const csg_taylor *a)
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
-static void place(const walker *w, const csg_tape_node *leaf, csg_piece_leaf *l)
+static void place(const walker *w, const csg_tape_node *leaf, csg_smooth_leaf *l)
 {
     const float *parameters = w->tape->parameters + leaf->parameters;
     const float *frame = parameters + CSG_LEAF_FRAME;
     bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
     const csg_taylor *p[3];
     for (int i = 0; i < 3; i++) {
-        csg_piece *q = &l->p[i];
+        csg_smooth *q = &l->p[i];
         memset(q, 0, sizeof *q);
         q->f.value = is_offset ? w->c[i] - (double)frame[i] : (double)frame[9 + i];
         for (int k = 0; k < 3; k++) {
@@ -80,17 +80,17 @@ static bool push_leaf(walker *w, uint32_t index)
 {
     const csg_tape_node *leaf = &w->tape->nodes[index];
     const float *parameters = w->tape->parameters + leaf->parameters;
-    csg_piece_leaf l;
-    csg_piece own;
+    csg_smooth_leaf l;
+    csg_smooth own;
     operand *o = &w->stack[w->top++];
     if (leaf->warp || !csg_op_is_primitive(leaf->op) ||
         csg_node_is_curve(csg_op_node_kind(leaf->op)))
         return false;
     place(w, leaf, &l);
-    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->piece(&l, &own))
+    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
         return false;
-    o->piece = csg_piece_line(&l, (double)parameters[CSG_LEAF_RAISE],
-                              (double)parameters[CSG_LEAF_SIGMA], &own);
+    o->piece = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
+                               (double)parameters[CSG_LEAF_SIGMA], &own);
     o->piece.f.error += rounding_of(w, parameters);
     o->node = index;
     o->has_slopes = w->with_slopes;
@@ -180,7 +180,8 @@ static bool join_siblings(walker *w, uint32_t index)
         return true;
     }
     a->has_slopes = false;
-    return apart + reach < support && blend_two(w, node, &a->piece.f, &b->piece.f, turn, &a->piece.f);
+    return apart + reach < support &&
+           blend_two(w, node, &a->piece.f, &b->piece.f, turn, &a->piece.f);
 }
 
 /* ---- round -------------------------------------------------------------------------------------
@@ -316,8 +317,8 @@ static int find_end(const walker *w, const csg_tape_node *node, const operand *o
         uint32_t number = tape->nodes[of[p].node].join_parameters;
         double beyond = -INFINITY;
         for (int i = 0; i < 2; i++)
-            beyond = fmax(beyond, (double)parameters[tape->nodes[of[pair[i]].node].join_parameters +
-                                                     number]);
+            beyond = fmax(
+                beyond, (double)parameters[tape->nodes[of[pair[i]].node].join_parameters + number]);
         if (!isfinite(beyond))
             continue;
         csg_taylor inside = csg_taylor_raised(of[p].piece.f, turn * beyond);

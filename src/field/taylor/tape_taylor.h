@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * A tape's field in a ball as one Taylor model of second order (base/taylor.h), where the field is
- * smooth there: its leaves by their smooth pieces (scene/primitives/piece.h), its blends as
+ * smooth there: its leaves by their smooth pieces (scene/primitives/smooth.h), its blends as
  * functions of these.
  */
 #ifndef CSG_FIELD_TAPE_TAYLOR_H

@@ -113,9 +113,9 @@ static inline bool csg_box_may_crease(const float *own, const float q[3], float 
     return b.high > own[3] || csg_box_edge_distance(own, q, 3) <= reach + 2 * own[3];
 }
 
-static inline bool csg_box_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_box_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    return csg_piece_of_box(l, l->own, (double)l->own[3], 3, out);
+    return csg_smooth_of_box(l, l->own, (double)l->own[3], 3, out);
 }
 
 #endif

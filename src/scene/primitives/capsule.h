@@ -121,26 +121,26 @@ static inline bool csg_capsule_may_crease(const float *own, const float q[3], fl
 }
 
 /* Between the ends a cone's mantle, beyond them a ball. */
-static inline bool csg_capsule_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     const double h = (double)l->own[0], r1 = (double)l->own[2], slant = (double)l->own[4];
-    csg_piece rho, distance, z = l->p[2];
+    csg_smooth rho, distance, z = l->p[2];
     double across = csg_hypot(l->p[0].f.value, l->p[1].f.value);
     double center = z.f.value - slant * across, room = l->reach * (1 + fabs(slant)) * (1 + 1e-9);
     if (center - room > 0 && center + room < h) {
         double cosine = 1 / sqrt(1 + slant * slant);
-        if (!csg_piece_radial(l, &rho))
+        if (!csg_smooth_radial(l, &rho))
             return false;
-        csg_piece side = csg_piece_line(l, r1, -cosine, &rho);
-        *out = csg_piece_sum(l, &side, -slant * cosine, &z);
+        csg_smooth side = csg_smooth_line(l, r1, -cosine, &rho);
+        *out = csg_smooth_sum(l, &side, -slant * cosine, &z);
         return true;
     }
     bool is_first = center + room < 0;
-    const csg_piece *const p[3] = {&l->p[0], &l->p[1], &z};
+    const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &z};
     z.f.value -= is_first ? 0 : h;
-    if ((!is_first && !(center - room > h)) || !csg_piece_norm(l, p, 3, &distance))
+    if ((!is_first && !(center - room > h)) || !csg_smooth_norm(l, p, 3, &distance))
         return false;
-    *out = csg_piece_line(l, is_first ? r1 : r1 + (double)l->own[3], -1, &distance);
+    *out = csg_smooth_line(l, is_first ? r1 : r1 + (double)l->own[3], -1, &distance);
     return true;
 }
 

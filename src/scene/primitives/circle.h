@@ -78,12 +78,12 @@ static inline bool csg_circle_may_crease(const float *own, const float q[3], flo
     return csg_band_meets(b, own[0], own[0]); /* on the axis */
 }
 
-static inline bool csg_circle_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_circle_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    csg_piece rho;
-    if (!csg_piece_radial(l, &rho))
+    csg_smooth rho;
+    if (!csg_smooth_radial(l, &rho))
         return false;
-    *out = csg_piece_line(l, (double)l->own[0], -1, &rho);
+    *out = csg_smooth_line(l, (double)l->own[0], -1, &rho);
     return true;
 }
 

@@ -276,7 +276,7 @@ static inline bool csg_ellipsoid_may_crease(const float *own, const float q[3], 
 }
 
 /* Its distance has no closed form. */
-static inline bool csg_ellipsoid_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_ellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     return false;
 }

@@ -212,48 +212,48 @@ static inline bool csg_frustum_may_crease(const float *own, const float q[3], fl
     return b.high > own[6] || best <= reach + 2 * own[6];
 }
 
-/* The side, a cap, or, outside, a rim. About the axis the distance from it is no smooth function, but
- * a cap needs no more than bounds of it. */
-static inline bool csg_frustum_piece(const csg_piece_leaf *l, csg_piece *out)
+/* The side, a cap, or, outside, a rim. About the axis the distance from it is no smooth function,
+ * but a cap needs no more than bounds of it. */
+static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     const float *own = l->own;
     const double h = (double)own[2], nx = (double)own[3], nz = (double)own[4];
     const double reach = l->reach * (1 + 1e-9);
     double end = l->p[2].f.value < 0 ? -1 : 1, rim = (double)own[1] + end * (double)own[7];
     double radius = csg_hypot(l->p[0].f.value, l->p[1].f.value);
-    csg_piece rho, distance, cap = csg_piece_line(l, -h, end, &l->p[2]);
+    csg_smooth rho, distance, cap = csg_smooth_line(l, -h, end, &l->p[2]);
     double over_cap = cap.f.value; /* at the centre, as the side's here: at most */
     double over_side = (radius + reach - rim) * nx + (fabs(over_cap) + reach) * fabs(nz);
     bool is_under = end * l->p[2].f.value > reach && radius + reach < rim;
     if (is_under && (over_cap > reach || over_cap - reach > over_side)) {
-        *out = csg_piece_line(l, (double)own[6], -1, &cap);
+        *out = csg_smooth_line(l, (double)own[6], -1, &cap);
         return true;
     }
-    if (!csg_piece_radial(l, &rho))
+    if (!csg_smooth_radial(l, &rho))
         return false;
-    csg_piece up = csg_piece_line(l, h, 1, &l->p[2]);
-    csg_piece side = csg_piece_line(l, -(double)own[0] * nx, nx, &rho);
-    side = csg_piece_sum(l, &side, nz, &up);
-    csg_piece along = csg_piece_line(l, (double)own[0] * nz, -nz, &rho);
-    along = csg_piece_sum(l, &along, nx, &up);
-    csg_piece past = csg_piece_line(l, -(double)own[5], 1, &along);
-    csg_piece other_cap = csg_piece_line(l, -h, -end, &l->p[2]);
-    bool is_beside = csg_piece_is_positive(l, &along) && csg_piece_is_negative(l, &past);
-    bool is_between = csg_piece_is_negative(l, &cap) && csg_piece_is_negative(l, &other_cap);
-    bool is_deepest = is_between && csg_piece_is_above(l, &side, &cap) &&
-                      csg_piece_is_above(l, &side, &other_cap);
-    if ((is_beside && (is_deepest || csg_piece_is_positive(l, &side))) ||
-        (is_deepest && csg_piece_is_negative(l, &side))) {
-        *out = csg_piece_line(l, (double)own[6], -1, &side);
+    csg_smooth up = csg_smooth_line(l, h, 1, &l->p[2]);
+    csg_smooth side = csg_smooth_line(l, -(double)own[0] * nx, nx, &rho);
+    side = csg_smooth_sum(l, &side, nz, &up);
+    csg_smooth along = csg_smooth_line(l, (double)own[0] * nz, -nz, &rho);
+    along = csg_smooth_sum(l, &along, nx, &up);
+    csg_smooth past = csg_smooth_line(l, -(double)own[5], 1, &along);
+    csg_smooth other_cap = csg_smooth_line(l, -h, -end, &l->p[2]);
+    bool is_beside = csg_smooth_is_positive(l, &along) && csg_smooth_is_negative(l, &past);
+    bool is_between = csg_smooth_is_negative(l, &cap) && csg_smooth_is_negative(l, &other_cap);
+    bool is_deepest = is_between && csg_smooth_is_above(l, &side, &cap) &&
+                      csg_smooth_is_above(l, &side, &other_cap);
+    if ((is_beside && (is_deepest || csg_smooth_is_positive(l, &side))) ||
+        (is_deepest && csg_smooth_is_negative(l, &side))) {
+        *out = csg_smooth_line(l, (double)own[6], -1, &side);
         return true;
     }
-    csg_piece over = csg_piece_line(l, -rim, 1, &rho);
-    const csg_piece *const from_rim[2] = {&over, &cap};
-    bool is_past = end > 0 ? csg_piece_is_positive(l, &past) : csg_piece_is_negative(l, &along);
-    if (!(end * l->p[2].f.value > reach) || !is_past || !csg_piece_is_positive(l, &over) ||
-        !csg_piece_is_positive(l, &cap) || !csg_piece_norm(l, from_rim, 2, &distance))
+    csg_smooth over = csg_smooth_line(l, -rim, 1, &rho);
+    const csg_smooth *const from_rim[2] = {&over, &cap};
+    bool is_past = end > 0 ? csg_smooth_is_positive(l, &past) : csg_smooth_is_negative(l, &along);
+    if (!(end * l->p[2].f.value > reach) || !is_past || !csg_smooth_is_positive(l, &over) ||
+        !csg_smooth_is_positive(l, &cap) || !csg_smooth_norm(l, from_rim, 2, &distance))
         return false;
-    *out = csg_piece_line(l, (double)own[6], -1, &distance);
+    *out = csg_smooth_line(l, (double)own[6], -1, &distance);
     return true;
 }
 

@@ -22,7 +22,7 @@ typedef struct csg_leaf {
     csg_vec3 offset;
     double own[CSG_LEAF_MOST_OWN];
     int own_count;
-    double magnitude; /* largest length that takes part in its arithmetic */
+    double magnitude;     /* largest length that takes part in its arithmetic */
     double own_magnitude; /* and of those, in its own frame */
 } csg_leaf;
 

@@ -118,11 +118,11 @@ static inline bool csg_plane_may_crease(const float *own, const float q[3], floa
     return false;
 }
 
-static inline bool csg_plane_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_plane_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    *out = csg_piece_line(l, (double)l->own[3], -(double)l->own[0], &l->p[0]);
+    *out = csg_smooth_line(l, (double)l->own[3], -(double)l->own[0], &l->p[0]);
     for (int k = 1; k < 3; k++)
-        *out = csg_piece_sum(l, out, -(double)l->own[k], &l->p[k]);
+        *out = csg_smooth_sum(l, out, -(double)l->own[k], &l->p[k]);
     return true;
 }
 

@@ -18,13 +18,21 @@
 
 static const csg_primitive rows[] = {
 #define CSG_PRIMITIVE(NAME, name, count, traits, call, otherwise, usual, doc)                      \
-    [CSG_NODE_##NAME - CSG_NODE_FIRST_PRIMITIVE] = {                                               \
-        COMMON(name, count, traits, call, otherwise, usual), csg_##name##_pack, CSG_##NAME##_OWN,  \
-        csg_##name##_gradients, csg_##name##_piece, csg_##name##_may_crease},
+    [CSG_NODE_##NAME -                                                                             \
+        CSG_NODE_FIRST_PRIMITIVE] = {COMMON(name, count, traits, call, otherwise, usual),          \
+                                     csg_##name##_pack,                                            \
+                                     CSG_##NAME##_OWN,                                             \
+                                     csg_##name##_gradients,                                       \
+                                     csg_##name##_smooth,                                          \
+                                     csg_##name##_may_crease},
 #define CSG_CURVE_PRIMITIVE(NAME, name, count, traits, call, otherwise, usual, doc)                \
     [CSG_NODE_##NAME -                                                                             \
-        CSG_NODE_FIRST_PRIMITIVE] = {COMMON(name, count, traits, call, otherwise, usual), NULL, 0, \
-                                     NULL, NULL, csg_##name##_may_crease},
+        CSG_NODE_FIRST_PRIMITIVE] = {COMMON(name, count, traits, call, otherwise, usual),          \
+                                     NULL,                                                         \
+                                     0,                                                            \
+                                     NULL,                                                         \
+                                     NULL,                                                         \
+                                     csg_##name##_may_crease},
 #include "scene/primitives/primitives.def"
 };
 

@@ -11,7 +11,7 @@
 #include "scene/formula/step.h"
 #include "scene/primitives/cone_ball.h"
 #include "scene/primitives/leaf.h"
-#include "scene/primitives/piece.h"
+#include "scene/primitives/smooth.h"
 #include "scene/primitives/sizes.h"
 #include "scene/reference.h"
 
@@ -85,9 +85,9 @@ typedef struct csg_primitive {
     /* Adds the gradients in the ball (cone_ball.h). False: no bound. NULL for curves
      * (field/gradients/cone_curve.h). */
     bool (*gradients)(csg_cone_leaf *leaf);
-    /* The field in a ball where one formula of it holds (piece.h). False: none does all over it, or
+    /* The field in a ball where one formula of it holds (smooth.h). False: none does all over it, or
      * it has no third derivatives to speak of. NULL for curves. */
-    bool (*piece)(const csg_piece_leaf *leaf, csg_piece *out);
+    bool (*smooth)(const csg_smooth_leaf *leaf, csg_smooth *out);
     /* Whether a crease of the field may be within `reach` of q where its values are in the band. A
      * centre or an axis counts too. */
     bool (*may_crease)(const float *own, const float q[3], float reach, csg_band b);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "scene/formula/terms.h"
-#include "scene/primitives/piece.h"
+#include "scene/primitives/smooth.h"
 #include "scene/primitives/point.h"
 #include "scene/primitives/primitive.h"
 

@@ -96,9 +96,9 @@ static inline bool csg_rectangle_may_crease(const float *own, const float q[3], 
     return b.high > own[2] || csg_box_edge_distance(own, q, 2) <= reach + 2 * own[2];
 }
 
-static inline bool csg_rectangle_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_rectangle_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    return csg_piece_of_box(l, l->own, (double)l->own[2], 2, out);
+    return csg_smooth_of_box(l, l->own, (double)l->own[2], 2, out);
 }
 
 #endif

@@ -74,11 +74,11 @@ static inline bool csg_slab_may_crease(const float *own, const float q[3], float
     return csg_band_meets(b, own[0], INFINITY); /* in the middle plane */
 }
 
-static inline bool csg_slab_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_slab_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    const csg_piece *z = &l->p[2];
-    *out = csg_piece_line(l, (double)l->own[0], z->f.value < 0 ? 1 : -1, z);
-    return csg_piece_is_positive(l, z) || csg_piece_is_negative(l, z);
+    const csg_smooth *z = &l->p[2];
+    *out = csg_smooth_line(l, (double)l->own[0], z->f.value < 0 ? 1 : -1, z);
+    return csg_smooth_is_positive(l, z) || csg_smooth_is_negative(l, z);
 }
 
 #endif

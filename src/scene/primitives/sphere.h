@@ -76,13 +76,13 @@ static inline bool csg_sphere_may_crease(const float *own, const float q[3], flo
     return csg_band_meets(b, own[0], own[0]); /* at the centre */
 }
 
-static inline bool csg_sphere_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_sphere_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    const csg_piece *const p[3] = {&l->p[0], &l->p[1], &l->p[2]};
-    csg_piece distance;
-    if (!csg_piece_norm(l, p, 3, &distance))
+    const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &l->p[2]};
+    csg_smooth distance;
+    if (!csg_smooth_norm(l, p, 3, &distance))
         return false;
-    *out = csg_piece_line(l, (double)l->own[0], -1, &distance);
+    *out = csg_smooth_line(l, (double)l->own[0], -1, &distance);
     return true;
 }
 

@@ -141,7 +141,7 @@ static inline bool csg_superellipsoid_may_crease(const float *own, const float q
 }
 
 /* Its powers have no bound on third derivatives at its planes of symmetry. */
-static inline bool csg_superellipsoid_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_superellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     return false;
 }

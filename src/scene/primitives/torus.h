@@ -142,32 +142,32 @@ static inline bool csg_torus_may_crease(const float *own, const float q[3], floa
 }
 
 /* Where the ring is nearest, or one of an arc's ends. */
-static inline bool csg_torus_piece(const csg_piece_leaf *l, csg_piece *out)
+static inline bool csg_torus_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     const double big = (double)l->own[0], small = (double)l->own[1];
     const double cosine = (double)l->own[2], sine = (double)l->own[3];
     double side = l->p[1].f.value < 0 ? -1 : 1;
-    csg_piece turned = csg_piece_scaled(l, side * cosine, &l->p[1]);
-    csg_piece past = csg_piece_sum(l, &turned, -sine, &l->p[0]); /* the end, > 0 */
-    csg_piece rho, x, y, distance;
+    csg_smooth turned = csg_smooth_scaled(l, side * cosine, &l->p[1]);
+    csg_smooth past = csg_smooth_sum(l, &turned, -sine, &l->p[0]); /* the end, > 0 */
+    csg_smooth rho, x, y, distance;
     bool is_whole = !(cosine > -1);
-    bool has_side = csg_piece_is_positive(l, &l->p[1]) || csg_piece_is_negative(l, &l->p[1]);
-    if (is_whole || (has_side && csg_piece_is_negative(l, &past))) {
-        const csg_piece *const to_ring[2] = {&x, &l->p[2]};
-        if (!csg_piece_radial(l, &rho))
+    bool has_side = csg_smooth_is_positive(l, &l->p[1]) || csg_smooth_is_negative(l, &l->p[1]);
+    if (is_whole || (has_side && csg_smooth_is_negative(l, &past))) {
+        const csg_smooth *const to_ring[2] = {&x, &l->p[2]};
+        if (!csg_smooth_radial(l, &rho))
             return false;
-        x = csg_piece_line(l, -big, 1, &rho);
-        if (!csg_piece_norm(l, to_ring, 2, &distance))
+        x = csg_smooth_line(l, -big, 1, &rho);
+        if (!csg_smooth_norm(l, to_ring, 2, &distance))
             return false;
     } else {
-        const csg_piece *const to_end[3] = {&x, &y, &l->p[2]};
-        x = csg_piece_line(l, -big * cosine, 1, &l->p[0]);
-        y = csg_piece_line(l, -big * sine, side, &l->p[1]);
-        if (!has_side || !csg_piece_is_positive(l, &past) ||
-            !csg_piece_norm(l, to_end, 3, &distance))
+        const csg_smooth *const to_end[3] = {&x, &y, &l->p[2]};
+        x = csg_smooth_line(l, -big * cosine, 1, &l->p[0]);
+        y = csg_smooth_line(l, -big * sine, side, &l->p[1]);
+        if (!has_side || !csg_smooth_is_positive(l, &past) ||
+            !csg_smooth_norm(l, to_end, 3, &distance))
             return false;
     }
-    *out = csg_piece_line(l, small, -1, &distance);
+    *out = csg_smooth_line(l, small, -1, &distance);
     return true;
 }
 
