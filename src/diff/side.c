@@ -13,6 +13,7 @@
 #include "base/trace.h"
 #include "mesh/inspect.h"
 #include "mesh/view.h"
+#include "shape/polyhedra/piece.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
 
@@ -186,7 +187,7 @@ static void enter_frame(csg_diff_pair *pair)
     }
     double rounding = is_exact ? 0 : 0x1p-38;
     for (int i = 0; i < 2; i++)
-        pair->sides[i].slack = rounding + 0x1p-48;
+        pair->sides[i].slack = rounding;
     pair->precision = 0x1p-23 * largest_coordinate(pair->box) * pair->frame.scale;
 }
 
@@ -252,25 +253,11 @@ void csg_diff_pair_release(csg_diff_pair *pair)
 
 /* ---- trees and figures ---------------------------------------------------------------------- */
 
-/* What rounding in double can make of the distance to one triangle: its normal is off by 2^-51 over
- * its thinness, over the length of the triangle; needles are taken for their edges. */
-static double slack_of(const csg_tree_triangle *t)
-{
-    csg_vec3 bc = csg_vec3_sub(t->ac, t->ab), normal = csg_vec3_cross(t->ab, t->ac);
-    double longest2 =
-        fmax(csg_vec3_dot(bc, bc), fmax(csg_vec3_dot(t->ab, t->ab), csg_vec3_dot(t->ac, t->ac)));
-    double longest = sqrt(longest2);
-    return t->is_needle ? 0x1p-26 * longest : 0x1p-50 * longest * longest2 / csg_vec3_norm(normal);
-}
-
 static csgm_status make_tree(csg_diff_pair *pair, csg_diff_side *side)
 {
     if (!csg_tree_make(&pair->context->memory, &side->arena, &side->chain, &side->tree))
         return CSGM_ERR_MEMORY;
-    double most = 0;
-    for (size_t i = 0; i < side->tree.count; i++)
-        most = fmax(most, slack_of(&side->tree.triangles[i]));
-    side->slack += most;
+    side->slack += csg_piece_slack(&side->tree);
     return CSGM_OK;
 }
 
