@@ -155,12 +155,6 @@ static csg_box box_of_side(const csg_diff_pair *pair, const csg_diff_side *side)
 
 /* ---- the frame ------------------------------------------------------------------------------ */
 
-static csg_vec3 rounded(csg_vec3 p)
-{
-    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
-                         csg_triangle_frame_round(p.z));
-}
-
 static double largest_coordinate(csg_box box)
 {
     return fmax(
@@ -180,7 +174,8 @@ static void enter_frame(csg_diff_pair *pair)
         pair->frame.center = csg_box_center(pair->box); /* all at one place */
     bool is_exact = true;
     for (size_t i = 0; i < pair->point_count; i++) {
-        csg_vec3 p = rounded(csg_triangle_frame_enter(&pair->frame, pair->points[i]));
+        csg_vec3 p =
+            csg_triangle_frame_round_point(csg_triangle_frame_enter(&pair->frame, pair->points[i]));
         csg_vec3 back = csg_triangle_frame_leave(&pair->frame, p);
         is_exact = is_exact && memcmp(&back, &pair->points[i], sizeof back) == 0;
         pair->points[i] = p;
@@ -364,7 +359,7 @@ bool csg_diff_is_inside(const csg_diff_side *side, csg_vec3 p)
     if (!(p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
           p.z >= box.min.z && p.z <= box.max.z))
         return false;
-    return csg_tree_winding(&side->tree, rounded(p), NULL) != 0;
+    return csg_tree_winding(&side->tree, csg_triangle_frame_round_point(p), NULL) != 0;
 }
 
 /* ---- which axis is up ----------------------------------------------------------------------- */

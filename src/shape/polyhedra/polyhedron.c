@@ -97,12 +97,6 @@ static bool shares_row(const known_point *from, csg_vec3 p)
     return from->is_set && from->at.y == p.y && from->at.z == p.z;
 }
 
-static csg_vec3 cell_of(csg_vec3 p)
-{
-    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
-                         csg_triangle_frame_round(p.z));
-}
-
 static bool box_holds(csg_box box, csg_vec3 p)
 {
     return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
@@ -174,8 +168,9 @@ static int find_winding(walker *w, found *f, double free, bool is_known)
         return winding;
     const csg_tree *tree = &w->solid->tree;
     if (shares_row(&w->last, p))
-        return w->last.winding + csg_tree_winding_step(tree, cell_of(p), cell_of(w->last.at));
-    return csg_tree_winding(tree, cell_of(p), NULL);
+        return w->last.winding + csg_tree_winding_step(tree, csg_triangle_frame_round_point(p),
+                                                       csg_triangle_frame_round_point(w->last.at));
+    return csg_tree_winding(tree, csg_triangle_frame_round_point(p), NULL);
 }
 
 /* Member by member: a copy by vectors would wait for what was just written. */
@@ -507,7 +502,7 @@ static bool is_overlapping(const polyhedron *solid)
         csg_vec3 out = csg_vec3_scale(csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac)), 0x1p-30);
         csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
         for (int k = 0; k < 2; k++) {
-            csg_vec3 cell = cell_of(at[k]);
+            csg_vec3 cell = csg_triangle_frame_round_point(at[k]);
             if (box_holds(solid->tree.box, cell) &&
                 csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
                 return true;
