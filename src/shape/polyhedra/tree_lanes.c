@@ -4,20 +4,12 @@
  * operations and their order are those of one point (tree_nearest.c), so are the bits; in float,
  * only what is certainly not the nearest is passed over.
  */
-#include "base/four.h"
-#include "shape/shape_kernel.h"
+#include "shape/lane.h"
 
-enum { LANES = CSG_SHAPE_WIDTH };
-
-/* Vector types of gcc and clang, as in region_lanes.c. Places are kept as doubles, which hold them
- * exactly. */
-typedef double lane __attribute__((vector_size(LANES * sizeof(double))));
-typedef int64_t mask __attribute__((vector_size(LANES * sizeof(int64_t)))); /* all ones, or 0 */
+/* Beside doubles: their floats. Places are kept as doubles, which hold them exactly. */
 typedef float narrow __attribute__((vector_size(LANES * sizeof(float))));
 typedef int32_t narrow_mask __attribute__((vector_size(LANES * sizeof(int32_t))));
 
-/* Not functions: vectors wider than the registers have no settled way to be passed to one. */
-#define CHOOSE(is_first, a, b) (lane)(((is_first) & (mask)(a)) | (~(is_first) & (mask)(b)))
 #define POSITIVE(x) (narrow)((narrow_mask)(x) & ((x) > (narrow){0}))
 
 typedef struct search {
@@ -30,15 +22,6 @@ typedef struct search {
 static inline bool is_some(const narrow_mask *m)
 {
     csg_four_mask fours[(sizeof *m + sizeof(csg_four_mask) - 1) / sizeof(csg_four_mask)] = {{0}};
-    memcpy(fours, m, sizeof *m);
-    for (size_t i = 1; i < sizeof fours / sizeof *fours; i++)
-        fours[0] |= fours[i];
-    return csg_four_bits(fours[0]) != 0;
-}
-
-static inline bool is_some_lane(const mask *m)
-{
-    csg_four_mask fours[sizeof *m / sizeof(csg_four_mask)];
     memcpy(fours, m, sizeof *m);
     for (size_t i = 1; i < sizeof fours / sizeof *fours; i++)
         fours[0] |= fours[i];
