@@ -74,14 +74,22 @@ static const double LEAST = 0x1p-36;
 /* Threads may find it twice; they find the same. */
 static bool is_plain(const polyhedron *solid, uint32_t place)
 {
-    if (solid->is_convex)
-        return !solid->tree.triangles[place].is_needle;
     int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
     if (known == PLAIN_UNKNOWN) {
         known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
         atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
     }
     return known == PLAIN_YES;
+}
+
+/* Edges that count as convex may bend the other way by 2^-30 (convex.c): farther from the surface
+ * than this all triangles of a convex solid but needles are as good as plain. */
+static const double CONVEX_BEYOND = 0x1p-28;
+
+static bool is_plain_beyond(const polyhedron *solid, uint32_t place, double free)
+{
+    return solid->is_convex && free > CONVEX_BEYOND ? !solid->tree.triangles[place].is_needle
+                                                    : is_plain(solid, place);
 }
 
 /* Whether no triangle is between them. */
@@ -115,8 +123,9 @@ static void locate(const polyhedron *solid, found *f)
     f->is_located = true;
 }
 
-/* The winding number at a point, from the triangle that is nearest; false: it does not tell. */
-static bool read_side(const polyhedron *solid, found *f, int *winding)
+/* The winding number at a point, from the triangle that is nearest; false: it does not tell. free:
+ * no triangle within. */
+static bool read_side(const polyhedron *solid, found *f, double free, int *winding)
 {
     /* cosines are off by less: the foot is more than LEAST away */
     static const double UNCERTAIN = 1e-3;
@@ -125,10 +134,10 @@ static bool read_side(const polyhedron *solid, found *f, int *winding)
     static const double ALONG = 0.9;
     uint32_t place = f->nearest.place;
     const csg_tree_triangle *t = &solid->tree.triangles[place];
-    if (!is_plain(solid, place))
+    if (!is_plain_beyond(solid, place, free))
         return false;
     locate(solid, f);
-    if (f->part == CSG_PART_CORNER && !solid->is_convex)
+    if (f->part == CSG_PART_CORNER && !(solid->is_convex && free > CONVEX_BEYOND))
         return false;
     if (f->part == CSG_PART_FACE) {
         *winding = csg_vec3_dot(csg_vec3_sub(f->at, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
@@ -140,18 +149,12 @@ static bool read_side(const polyhedron *solid, found *f, int *winding)
         return csg_vec3_dot(away, outward(t)) > -ALONG * csg_vec3_norm(away);
     }
     uint32_t other = solid->beside[place][f->part];
-    if (other == NO_PLACE || !is_plain(solid, other))
+    if (other == NO_PLACE || !is_plain_beyond(solid, other, free))
         return false;
     csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
     *winding = along < 0;
     return fabs(along) > UNCERTAIN * csg_vec3_norm(away);
-}
-
-/* Edges that count as convex may bend the other way by 2^-30: see convex.c. */
-static double nearest_told(const polyhedron *solid)
-{
-    return solid->is_convex ? 0x1p-28 : 0;
 }
 
 /* f->at is in the box. free: no triangle within. is_known: f->nearest is the nearest of all; nearer
@@ -164,7 +167,7 @@ static int find_winding(walker *w, found *f, double free, bool is_known)
         return w->last.winding;
     if (is_free(&w->row, p, free))
         return w->row.winding;
-    if (free > nearest_told(w->solid) && is_known && read_side(w->solid, f, &winding))
+    if (free > 0 && is_known && read_side(w->solid, f, free, &winding))
         return winding;
     const csg_tree *tree = &w->solid->tree;
     if (shares_row(&w->last, p))
@@ -406,7 +409,8 @@ static bool take_triangle(void *user, uint32_t place)
     taking *t = user;
     const csg_tree_triangle *triangle = &t->solid->tree.triangles[place];
     csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(triangle->ac, triangle->ab));
-    return ++t->count <= MOST && t->take(t->user, inward) && is_plain(t->solid, place);
+    return ++t->count <= MOST && t->take(t->user, inward) &&
+           is_plain_beyond(t->solid, place, INFINITY);
 }
 
 /* Within the ball distances are at most that of c and its radius. */
