@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "diff/piece.h"
+#include "shape/polyhedra/piece.h"
 
 enum {
     RUN = 4096,         /* triangles bounded at a time */
@@ -215,17 +215,11 @@ static void work_on(const engine *e, outcome *out, csg_piece piece, csg_piece *s
         take_lower(e, out, look_up(e, corner, piece.hint).squared, corner);
     }
     csg_piece parts[CSG_PIECE_PARTS];
-    bool in_face;
     if (piece.bound <= target_of(e, out->lower)) {
         out->upper = fmax(out->upper, piece.bound);
         return;
     }
-    csg_triangle_foot(t, center, &in_face);
-    uint32_t count = in_face ? csg_piece_cut(&piece, t, parts) : 0;
-    if (count < 2)
-        count = csg_piece_halve(&piece, parts);
-    for (uint32_t i = 0; i < count; i++)
-        parts[i].bound = piece.bound;
+    uint32_t count = csg_piece_divide(&piece, t, center, parts);
     if (count < 2)
         out->upper = fmax(out->upper, piece.bound); /* too small for doubles */
     else

@@ -13,6 +13,7 @@
 #include "base/trace.h"
 #include "mesh/inspect.h"
 #include "mesh/view.h"
+#include "shape/polyhedra/piece.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
 
@@ -154,12 +155,6 @@ static csg_box box_of_side(const csg_diff_pair *pair, const csg_diff_side *side)
 
 /* ---- the frame ------------------------------------------------------------------------------ */
 
-static csg_vec3 rounded(csg_vec3 p)
-{
-    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
-                         csg_triangle_frame_round(p.z));
-}
-
 static double largest_coordinate(csg_box box)
 {
     return fmax(
@@ -179,14 +174,15 @@ static void enter_frame(csg_diff_pair *pair)
         pair->frame.center = csg_box_center(pair->box); /* all at one place */
     bool is_exact = true;
     for (size_t i = 0; i < pair->point_count; i++) {
-        csg_vec3 p = rounded(csg_triangle_frame_enter(&pair->frame, pair->points[i]));
+        csg_vec3 p =
+            csg_triangle_frame_round_point(csg_triangle_frame_enter(&pair->frame, pair->points[i]));
         csg_vec3 back = csg_triangle_frame_leave(&pair->frame, p);
         is_exact = is_exact && memcmp(&back, &pair->points[i], sizeof back) == 0;
         pair->points[i] = p;
     }
     double rounding = is_exact ? 0 : 0x1p-38;
     for (int i = 0; i < 2; i++)
-        pair->sides[i].slack = rounding + 0x1p-48;
+        pair->sides[i].slack = rounding;
     pair->precision = 0x1p-23 * largest_coordinate(pair->box) * pair->frame.scale;
 }
 
@@ -252,25 +248,11 @@ void csg_diff_pair_release(csg_diff_pair *pair)
 
 /* ---- trees and figures ---------------------------------------------------------------------- */
 
-/* What rounding in double can make of the distance to one triangle: its normal is off by 2^-51 over
- * its thinness, over the length of the triangle; needles are taken for their edges. */
-static double slack_of(const csg_tree_triangle *t)
-{
-    csg_vec3 bc = csg_vec3_sub(t->ac, t->ab), normal = csg_vec3_cross(t->ab, t->ac);
-    double longest2 =
-        fmax(csg_vec3_dot(bc, bc), fmax(csg_vec3_dot(t->ab, t->ab), csg_vec3_dot(t->ac, t->ac)));
-    double longest = sqrt(longest2);
-    return t->is_needle ? 0x1p-26 * longest : 0x1p-50 * longest * longest2 / csg_vec3_norm(normal);
-}
-
 static csgm_status make_tree(csg_diff_pair *pair, csg_diff_side *side)
 {
     if (!csg_tree_make(&pair->context->memory, &side->arena, &side->chain, &side->tree))
         return CSGM_ERR_MEMORY;
-    double most = 0;
-    for (size_t i = 0; i < side->tree.count; i++)
-        most = fmax(most, slack_of(&side->tree.triangles[i]));
-    side->slack += most;
+    side->slack += csg_piece_slack(&side->tree);
     return CSGM_OK;
 }
 
@@ -377,7 +359,7 @@ bool csg_diff_is_inside(const csg_diff_side *side, csg_vec3 p)
     if (!(p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
           p.z >= box.min.z && p.z <= box.max.z))
         return false;
-    return csg_tree_winding(&side->tree, rounded(p), NULL) != 0;
+    return csg_tree_winding(&side->tree, csg_triangle_frame_round_point(p), NULL) != 0;
 }
 
 /* ---- which axis is up ----------------------------------------------------------------------- */

@@ -34,6 +34,16 @@ class Tolerance(cli.CliTest):
         self.assertLessEqual(stats["max_distance_measured"], 0.01)
         self.assertEqual(stats["max_distance_bound"], 0.01)
 
+    def test_walls_thinner_than_the_tolerance(self):
+        """Two facetted balls, one in the other and 0.02 apart: all triangles are proven to be within 0.05 of these."""
+        self.write("skin.txt", "difference() { sphere(r = 10, $fn = 40); sphere(r = 9.98, $fn = 40); }\n")
+        stats = self.stats("skin.txt", "--facets=exact", "-e", "0.05", "-o", "skin.stl")
+        self.assertEqual((stats["open_places"], stats["max_distance_bound"], stats["euler"]), (0, 0.05, 4))
+        self.assertLess(stats["triangles"], 0.9 * stats["own_triangles_before"])
+        self.assert_status(self.run_in("skin.txt", "--facets=exact", "-o", "own.stl"), 0)
+        report = self.run_in("diff", "skin.stl", "own.stl", "--tol", "0.05", "--ignore-topology")
+        self.assert_status(report, 0)
+
     def radii(self, *arguments):
         """The least and the largest distance of a ball's vertices from its middle, and their triangles."""
         stats = self.stats("ball.txt", *arguments, "-o", "out.ply")

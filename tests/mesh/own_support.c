@@ -87,7 +87,7 @@ csg_node_id region_of(mesh_case *c, csg_outline *outline)
 
 /* Stars with holes in rows. */
 
-void own_fail_each_allocation(csg_node_id make(mesh_case *c), long step)
+void own_fail_each_allocation(csg_node_id make(mesh_case *c), double tolerance, long step)
 {
     mesh_case c;
     failing f = {0};
@@ -98,6 +98,7 @@ void own_fail_each_allocation(csg_node_id make(mesh_case *c), long step)
     c.context.memory.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
     csgm_mesh_options options = plain();
     options.quality = CSGM_QUALITY_DRAFT;
+    options.tolerance = tolerance;
     options.normals = CSGM_NORMALS_CREASE;
     csgm_status status = CSGM_ERR_MEMORY;
     long n = 0;

@@ -21,8 +21,8 @@ uint64_t own_of(mesh_case *c, const csgm_mesh_options *options);
 void assert_winds_beyond(const mesh_case *c, csg_random *random, double near);
 void assert_winds_around(const mesh_case *c, csg_random *random);
 
-/* Of the scene's mesh, with normals parted by creases: each allocation, or one of
- * `step`, fails once; it says so once, and nothing is left behind. */
-void own_fail_each_allocation(csg_node_id make(mesh_case *c), long step);
+/* Of the scene's mesh, with normals parted by creases, and within a tolerance (0: as it is): each
+ * allocation, or one of `step`, fails once; it says so once, and nothing is left behind. */
+void own_fail_each_allocation(csg_node_id make(mesh_case *c), double tolerance, long step);
 
 #endif

@@ -369,6 +369,62 @@ static csg_node_id one_scene(mesh_case *c)
     return make_ball(c, csg_vec3_make(0, 0, 0), 1, 60, 0.2);
 }
 
+/* ---- within a tolerance ------------------------------------------------------------------------
+ */
+
+static const double SKIN = 0.02, TOLERANCE = 0.05;
+
+/* A ball's skin, much thinner than the tolerance. */
+static csg_node_id skin(mesh_case *c)
+{
+    csg_triangles triangles;
+    csg_triangles_init(&triangles, &c->context.memory);
+    solid_add_ball(&triangles, csg_vec3_make(0, 0, 0), 2, 48, 24, 0);
+    size_t first = triangles.count;
+    solid_add_ball(&triangles, csg_vec3_make(0, 0, 0), 2 - SKIN, 48, 24, 0);
+    for (size_t t = first; t < triangles.count; t++)
+        solid_flip(&triangles, t);
+    csg_node_id node = shape_of(c, &triangles);
+    csg_triangles_release(&triangles);
+    return node;
+}
+
+/* Fewer triangles, of which it is proven that they are within the tolerance of the solid's own:
+ * both walls keep apart, and no place of them is farther away. */
+static void test_thin_walls(void **state)
+{
+    (void)state;
+    enum { PLACES = 1000 };
+    mesh_case c;
+    csg_triangles own;
+    csg_random random = {1};
+    mesh_case_begin(&c, 2);
+    csg_triangles_init(&own, &c.context.memory);
+    mesh_case_compile(&c, skin(&c));
+    csgm_mesh_options options = plain();
+    options.tolerance = TOLERANCE;
+    assert_int_equal(mesh_build(&c, &options), CSGM_OK);
+    assert_int_equal(c.stats.open_places, 0);
+    assert_true(c.stats.max_distance_bound == TOLERANCE);
+    assert_true(c.mesh->triangle_count < c.stats.triangles_before / 2);
+    assert_uncrossed(c.mesh, "a thin skin");
+    solid_add_ball(&own, csg_vec3_make(0, 0, 0), 2, 48, 24, 0);
+    solid_add_ball(&own, csg_vec3_make(0, 0, 0), 2 - SKIN, 48, 24, 0);
+    for (int i = 0; i < PLACES; i++) {
+        const uint32_t *corners =
+            c.mesh->indices +
+            3 * (size_t)csg_random_below(&random, (uint32_t)c.mesh->triangle_count);
+        double a = csg_random_uniform(&random, 0, 1), b = csg_random_uniform(&random, 0, 1 - a);
+        csg_vec3 p = csg_vec3_scale(mesh_vertex(&c, corners[0]), 1 - a - b);
+        p = csg_vec3_add(p, csg_vec3_scale(mesh_vertex(&c, corners[1]), a));
+        p = csg_vec3_add(p, csg_vec3_scale(mesh_vertex(&c, corners[2]), b));
+        assert_true(solid_distance(&own, p) <= TOLERANCE);
+    }
+    mesh_assert_same_by(&c, skin, &options, 1, CSGM_ISA_SCALAR);
+    csg_triangles_release(&own);
+    mesh_case_end(&c);
+}
+
 static void test_same_bytes(void **state)
 {
     (void)state;
@@ -392,18 +448,19 @@ static csg_node_id small_ball(mesh_case *c)
 static void test_each_allocation(void **state)
 {
     (void)state;
-    own_fail_each_allocation(small_ball, 1);
+    own_fail_each_allocation(small_ball, 0, 1);
+    own_fail_each_allocation(small_ball, TOLERANCE, 7);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vertices),        cmocka_unit_test(test_looks),
-        cmocka_unit_test(test_normals),         cmocka_unit_test(test_extrusions),
-        cmocka_unit_test(test_touching_loops),  cmocka_unit_test(test_options),
-        cmocka_unit_test(test_soundness),       cmocka_unit_test(test_other_scenes),
-        cmocka_unit_test(test_random_shells),   cmocka_unit_test(test_same_bytes),
-        cmocka_unit_test(test_each_allocation),
+        cmocka_unit_test(test_vertices),       cmocka_unit_test(test_looks),
+        cmocka_unit_test(test_normals),        cmocka_unit_test(test_extrusions),
+        cmocka_unit_test(test_touching_loops), cmocka_unit_test(test_options),
+        cmocka_unit_test(test_soundness),      cmocka_unit_test(test_other_scenes),
+        cmocka_unit_test(test_random_shells),  cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_thin_walls),     cmocka_unit_test(test_each_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

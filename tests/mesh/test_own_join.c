@@ -464,8 +464,8 @@ static void test_each_allocation(void **state)
     (void)state;
     if (!csg_booleans_are_available())
         skip();
-    own_fail_each_allocation(without_box, 1);
-    own_fail_each_allocation(without_ball, 9);
+    own_fail_each_allocation(without_box, 0, 1);
+    own_fail_each_allocation(without_ball, 0, 9);
 }
 
 int main(void)

@@ -35,17 +35,24 @@ static inline warped slice_at(const float *own, point p)
     return (warped){{p.x, p.y, 0}, {1.0f, 0, 0}, {0, 1.0f, 0}, {0, 0, 0}};
 }
 
-static inline warped twist_at(const float *own, point p)
+/* One comparison, since gcc makes no vectors of choices by two: differences are above 0 just where
+ * their numbers are apart that way. */
+static inline int is_between(float z, float low, float high)
 {
-    float low = own[CSG_TWIST_LOW], high = own[CSG_TWIST_HIGH], reach = own[CSG_TWIST_REACH];
-    float rate = own[CSG_TWIST_RATE];
+    return smaller(z - low, high - z) > 0;
+}
+
+/* By `rate` per length between two heights; what is farther from the axis than `reach` is drawn
+ * in. */
+static inline warped turned(float rate, float low, float high, float reach, point p)
+{
     float rho = sqrtf(p.x * p.x + p.y * p.y);
     int is_far = rho > reach;
     float inward = is_far ? reach / rho : 1.0f;
     float angle = -rate * smaller(larger(p.z, low), high);
     float c = inward * wave(angle, 1), s = inward * wave(angle, 0);
     float x = c * p.x - s * p.y, y = s * p.x + c * p.y;
-    float turning = (p.z > low) & (p.z < high) ? -rate : 0;
+    float turning = is_between(p.z, low, high) ? -rate : 0;
     float ux = is_far ? x / reach : 0, uy = is_far ? y / reach : 0; /* taken out of the columns */
     float first = ux * c + uy * s, second = uy * c - ux * s;
     return (warped){{x, y, p.z},
@@ -54,23 +61,24 @@ static inline warped twist_at(const float *own, point p)
                     {-turning * y, turning * x, 1.0f}};
 }
 
+static inline warped twist_at(const float *own, point p)
+{
+    return turned(own[CSG_TWIST_RATE], own[CSG_TWIST_LOW], own[CSG_TWIST_HIGH],
+                  own[CSG_TWIST_REACH], p);
+}
+
 /* A twist of what was divided, by the chain rule. own[CSG_TAPER_X], [CSG_TAPER_Y]: what the scales
  * grow by per length (compile_warp.c). */
 static inline warped taper_at(const float *own, point p)
 {
-    const float twist[] = {[CSG_TWIST_RATE] = own[CSG_TAPER_RATE],
-                           [CSG_TWIST_LOW] = own[CSG_TAPER_LOW],
-                           [CSG_TWIST_HIGH] = own[CSG_TAPER_HIGH],
-                           [CSG_TWIST_REACH] = own[CSG_TAPER_REACH]};
     float low = own[CSG_TAPER_LOW], high = own[CSG_TAPER_HIGH];
     float grow_x = own[CSG_TAPER_X], grow_y = own[CSG_TAPER_Y];
     float z = smaller(larger(p.z, low), high) - low;
     float per_x = 1.0f / (1.0f + grow_x * z), per_y = 1.0f / (1.0f + grow_y * z);
     float u = p.x * per_x, w = p.y * per_y;
-    int is_between = (p.z > low) & (p.z < high);
-    float less_u = is_between ? u * grow_x * per_x : 0,
-          less_w = is_between ? w * grow_y * per_y : 0;
-    warped of = twist_at(twist, (point){u, w, p.z});
+    float less_u = is_between(p.z, low, high) ? u * grow_x * per_x : 0,
+          less_w = is_between(p.z, low, high) ? w * grow_y * per_y : 0;
+    warped of = turned(own[CSG_TAPER_RATE], low, high, own[CSG_TAPER_REACH], (point){u, w, p.z});
     return (warped){of.at,
                     {of.dx.x * per_x, of.dx.y * per_x, 0},
                     {of.dy.x * per_y, of.dy.y * per_y, 0},

@@ -445,31 +445,17 @@ static void end(proof *p)
     csg_memory_release(memory, p->settlers, p->settler_count * sizeof *p->settlers);
 }
 
-/* Polyhedra's own triangles are the surface, but for what floats and joining them have rounded. */
-static bool is_surface(const proof *p, uint32_t triangle)
+static csgm_status check_by_field(const csg_remesh *remesh, double error, bool patient,
+                                  uint8_t *pending, csg_distance_proof *out)
 {
-    static const double ROUNDED = 64; /* of the noise, and less */
-    const csg_remesh *r = p->remesh;
-    return r->is_own && p->error > ROUNDED * (double)r->probe.noise &&
-           csg_remesh_is_as_begun(r, triangle);
-}
-
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
-                               uint8_t *pending, csg_distance_proof *out)
-{
-    static const double HOPELESS = 0.95;   /* pieces would have to be small, and many */
-    static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
+    static const double HOPELESS = 0.95; /* pieces would have to be small, and many */
     proof p = {.remesh = remesh, .error = error, .farthest = patient ? 1 : HOPELESS};
-    *out = (csg_distance_proof){0};
-    csg_mesh_take(remesh->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
     csgm_status status = begin(&p) ? CSGM_OK : csg_context_no_memory(remesh->context);
     const csg_corners *m = &remesh->corners;
     for (uint32_t t = 0; t < m->triangle_count && status == CSGM_OK && !out->stopped; t++)
         if (csg_corners_is_live(m, t) && pending[t]) {
             pending[t] = 0;
             p.at = t;
-            if (is_surface(&p, t))
-                continue;
             status = prove_triangle(&p, t, pending, out);
         }
     if (status == CSGM_OK && p.count && !out->stopped)
@@ -480,4 +466,25 @@ csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool pati
     }
     end(&p);
     return status;
+}
+
+csgm_status csg_check_distance(const csg_remesh *remesh, const csg_begun *begun, double error,
+                               bool patient, uint8_t *pending, csg_distance_proof *out)
+{
+    static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
+    *out = (csg_distance_proof){0};
+    csg_mesh_take(remesh->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
+    if (begun->tree.count) {
+        csg_begun_proof found;
+        csgm_status status = csg_begun_check(begun, remesh, error, pending, &found);
+        *out = (csg_distance_proof){.pieces = found.pieces};
+        if (status != CSGM_OK || !found.open)
+            return status;
+        if (csg_begun_is_decisive(begun, error)) {
+            out->open = found.open;
+            out->place = found.place;
+            return CSGM_OK;
+        }
+    }
+    return check_by_field(remesh, error, patient, pending, out);
 }

@@ -13,7 +13,7 @@
  *            pieces of the order of sqrt(E / curvature) are settled at once
  *   nearby   f changes its sign within E - r of c
  *
- * Triangles of polyhedra that are as they were need no proof: they are the surface.
+ * Meshes that began with triangles of polyhedra are held against those (begun.h).
  *
  * Every piece that is settled has the surface within E on the line through each of its points; and
  * where a cone settled it, just once: the surface near it is one sheet, so it is within E of the
@@ -22,20 +22,22 @@
 #ifndef CSG_MESH_DISTANCE_CHECK_H
 #define CSG_MESH_DISTANCE_CHECK_H
 
-#include "mesh/remesh/remesh.h"
+#include "mesh/distance/begun.h"
 
 typedef struct csg_distance_proof {
     uint64_t pieces;  /* looked at */
     uint64_t by_cone; /* settled so */
-    uint64_t open;    /* could not be settled */
+    uint64_t open;    /* could not be settled; of begun.h's proof, triangles */
     csg_vec3 place;   /* of the first of these, field frame */
     bool stopped;     /* it would have taken too long: nothing is known */
 } csg_distance_proof;
 
-/* pending, a byte per triangle: in, whether it is to be looked at; out, whether a piece of it
+/* begun: where it has triangles, they are the surface that the mesh began with; else the field
+ * alone tells.
+ * pending, a byte per triangle: in, whether it is to be looked at; out, whether a piece of it
  * stayed open. patient: what is as good as too far away is looked at, too: it costs the most, and
  * where a triangle can be mended that is cheaper. CSGM_OK or why it was stopped. */
-csgm_status csg_check_distance(const csg_remesh *remesh, double error, bool patient,
-                               uint8_t *pending, csg_distance_proof *out);
+csgm_status csg_check_distance(const csg_remesh *remesh, const csg_begun *begun, double error,
+                               bool patient, uint8_t *pending, csg_distance_proof *out);
 
 #endif

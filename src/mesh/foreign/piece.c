@@ -31,8 +31,7 @@ static csg_vec3 point_of(const csgm_mesh_view *source, uint32_t vertex)
 static csg_vec3 on_lattice(const csg_triangle_frame *frame, csg_vec3 p)
 {
     csg_vec3 q = csg_triangle_frame_enter(frame, p);
-    return csg_vec3_make(csg_triangle_frame_round(q.x), csg_triangle_frame_round(q.y),
-                         csg_triangle_frame_round(q.z));
+    return csg_triangle_frame_round_point(q);
 }
 
 static csg_box box_of(const csg_foreign_piece *piece)

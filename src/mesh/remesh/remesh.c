@@ -308,7 +308,7 @@ bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
 /* ---- beginning ---------------------------------------------------------------------------------
  */
 
-static csg_vec3 first_place(const csg_remesh *r, uint32_t vertex)
+csg_vec3 csg_remesh_first_place(const csg_remesh *r, uint32_t vertex)
 {
     return csg_vec3_sub(csg_vec3_from_floats(r->mesh->positions + 3 * (size_t)vertex),
                         r->marching->shift);
@@ -322,7 +322,7 @@ bool csg_remesh_is_as_begun(const csg_remesh *r, uint32_t triangle)
         uint32_t v = r->corners.vertex[c];
         if (v != r->mesh->indices[c])
             return false;
-        csg_vec3 off = csg_vec3_sub(r->at[v], first_place(r, v));
+        csg_vec3 off = csg_vec3_sub(r->at[v], csg_remesh_first_place(r, v));
         if (csg_vec3_dot(off, off) > 0)
             return false;
     }
@@ -333,7 +333,7 @@ static void copy_vertices(csg_remesh *r)
 {
     const csgm_mesh *mesh = r->mesh;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
-        r->at[v] = first_place(r, v);
+        r->at[v] = csg_remesh_first_place(r, v);
         if (r->looks && mesh->colors)
             memcpy(r->looks[v].color, mesh->colors + 4 * (size_t)v, 4);
         if (r->looks && mesh->materials)

@@ -59,6 +59,8 @@ csgm_status csg_remesh_write_back(csg_remesh *remesh, bool normals, bool split);
  * grows. False: stopped, or without memory; the watch knows. */
 bool csg_remesh_ease_kinds(csg_remesh *remesh);
 
+/* Where a vertex of the mesh that it began with was, field frame. */
+csg_vec3 csg_remesh_first_place(const csg_remesh *remesh, uint32_t vertex);
 /* Whether a triangle is one of those that it began with, in its place. */
 bool csg_remesh_is_as_begun(const csg_remesh *remesh, uint32_t triangle);
 

@@ -11,6 +11,7 @@
 
 typedef struct refiner {
     csg_remesh *remesh;
+    csg_begun begun;           /* the surface, if polyhedra's triangles are it */
     uint8_t *pending;          /* per triangle: to be proven (again) */
     uint32_t triangle, vertex; /* those before it are in use */
 } refiner;
@@ -481,18 +482,12 @@ static bool refine_open(refiner *f)
     return changed;
 }
 
-csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_places *far,
-                                  csg_distance_proof *out)
+/* Cuts what is open and holds it against the surface again, for as long as that helps. */
+static csgm_status refine_in_rounds(refiner *f, double error, csg_distance_proof *out)
 {
     enum { MOST_ROUNDS = 16, MOST_IDLE = 2, FEW = 32, MOST_IDLE_OF_FEW = 5 };
-    size_t count = r->corners.triangle_count;
-    refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
-    if (!f.pending)
-        return csg_context_no_memory(r->context);
-    for (size_t i = 0; i < far->count; i++)
-        reach(&f, far->at[i]);
-    memset(f.pending, 1, count);
-    csgm_status status = csg_check_distance(r, error, false, f.pending, out);
+    csg_remesh *r = f->remesh;
+    csgm_status status = csg_check_distance(r, &f->begun, error, false, f->pending, out);
     uint64_t least = UINT64_MAX / 10;
     int idle = 0; /* rounds that settled hardly any */
     for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;
@@ -501,12 +496,30 @@ csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_pla
         if (idle > (out->open > FEW ? MOST_IDLE : MOST_IDLE_OF_FEW))
             break;
         least = out->open < least ? out->open : least;
-        if (!refine_open(&f))
+        if (!refine_open(f))
             break;
-        status = csg_check_distance(r, error, false, f.pending, out);
+        status = csg_check_distance(r, &f->begun, error, false, f->pending, out);
     }
     if (status == CSGM_OK && out->open && !out->stopped)
-        status = csg_check_distance(r, error, true, f.pending, out);
+        status = csg_check_distance(r, &f->begun, error, true, f->pending, out);
+    return status;
+}
+
+csgm_status csg_refine_until_near(csg_remesh *r, double error, const csg_far_places *far,
+                                  csg_distance_proof *out)
+{
+    size_t count = r->corners.triangle_count;
+    refiner f = {.remesh = r, .pending = csg_memory_alloc(r->memory, count)};
+    if (!f.pending)
+        return csg_context_no_memory(r->context);
+    csgm_status status = csg_begun_make(r, &f.begun);
+    if (status == CSGM_OK) {
+        for (size_t i = 0; i < far->count; i++)
+            reach(&f, far->at[i]);
+        memset(f.pending, 1, count);
+        status = refine_in_rounds(&f, error, out);
+    }
+    csg_begun_release(&f.begun);
     csg_memory_release(r->memory, f.pending, count);
     return status;
 }

@@ -3,20 +3,9 @@
  * points, so nothing is compared across them. Operations and their order are those of one point
  * (region_search.c), so are the bits.
  */
-#include "shape/shape_kernel.h"
+#include "shape/lane.h"
 
-#include <string.h>
-
-enum { LANES = CSG_SHAPE_WIDTH };
-
-/* Vector types of gcc and clang: the loops are too short for the compiler to find by itself.
- * Numbers of leaves and segments are kept as doubles, which hold them exactly. */
-typedef double lane __attribute__((vector_size(LANES * sizeof(double))));
-typedef int64_t mask __attribute__((vector_size(LANES * sizeof(int64_t)))); /* all ones, or 0 */
-
-/* Not a function: vectors wider than the registers have no settled way to be passed to one. */
-#define CHOOSE(is_first, a, b) (lane)(((is_first) & (mask)(a)) | (~(is_first) & (mask)(b)))
-
+/* Numbers of leaves and segments are kept as doubles, which hold them exactly. */
 typedef struct search {
     lane x, y;
     lane first; /* leaf where the point's search begins */
@@ -25,8 +14,10 @@ typedef struct search {
 } search;
 
 /* A point's search begins with its first leaf, so among segments that are as near that leaf's
- * come before those of others, and then what comes first in the list. */
-static inline void search_leaf(const csg_segment_leaf *leaf, double number, search *s)
+ * come before those of others, and then what comes first in the list. counts: the points that look
+ * into this leaf. */
+static inline void search_leaf(const csg_segment_leaf *leaf, double number, const mask *counts,
+                               search *s)
 {
     const lane none = {0};
     lane squared = none + INFINITY, segment = none;
@@ -43,19 +34,62 @@ static inline void search_leaf(const csg_segment_leaf *leaf, double number, sear
         segment = CHOOSE(is_nearer, none + (double)k, segment);
     }
     mask is_first = s->first == none + number;
-    mask is_nearer = (squared < s->squared) | (is_first & (squared == s->squared));
+    mask is_nearer = *counts & ((squared < s->squared) | (is_first & (squared == s->squared)));
     s->squared = CHOOSE(is_nearer, squared, s->squared);
     s->segment = CHOOSE(is_nearer, segment + number * CSG_SEGMENT_LANES, s->segment);
     s->is_first_seen |= is_first;
 }
 
+/* ---- nodes ------------------------------------------------------------------------------------
+ */
+
+/* As in region_search.c. */
+enum { MOST_WAITING = 64 };
+
+/* A node or leaf, and how far its box is from each point; infinite for those that passed over the
+ * node above. */
+typedef struct waiting {
+    lane squared;
+    uint32_t child;
+} waiting;
+
+static inline void measure_box(const csg_segment_node *node, int k, const search *s, lane *out)
+{
+    const lane none = {0};
+    lane left = node->x0[k] - s->x, right = s->x - node->x1[k];
+    lane below = node->y0[k] - s->y, above = s->y - node->y1[k];
+    lane dx = CHOOSE(left > right, left, right), dy = CHOOSE(below > above, below, above);
+    dx = (lane)((dx > none) & (mask)dx);
+    dy = (lane)((dy > none) & (mask)dy);
+    *out = dx * dx + dy * dy;
+}
+
+/* The points go down together, and each of them looks into what it would look into by itself
+ * (region_search.c), in the same order. */
 static void search_node(const csg_segment_tree *tree, uint32_t node, search *s)
 {
-    for (int l = 0; l < LANES; l++) {
-        csg_segment_hit best = {s->squared[l], (uint32_t)s->segment[l]};
-        csg_segment_nearest_below(tree, node, s->x[l], s->y[l], &best);
-        s->squared[l] = best.squared;
-        s->segment[l] = best.segment;
+    waiting stack[MOST_WAITING];
+    size_t count = 0;
+    stack[count++] = (waiting){s->x * 0, node};
+    while (count) {
+        waiting at = stack[--count];
+        mask counts = at.squared < s->squared;
+        if (!is_some_lane(&counts))
+            continue;
+        uint32_t number = at.child & ~CSG_SEGMENT_LEAF;
+        if (at.child & CSG_SEGMENT_LEAF) {
+            search_leaf(&tree->leaves[number], number, &counts, s);
+            continue;
+        }
+        for (int k = CSG_SEGMENT_LANES - 1; k >= 0; k--) {
+            lane squared;
+            measure_box(&tree->nodes[number], k, s, &squared);
+            mask is_near = counts & (squared < s->squared);
+            if (!is_some_lane(&is_near))
+                continue;
+            stack[count].squared = CHOOSE(is_near, squared, s->x * 0 + INFINITY);
+            stack[count++].child = tree->nodes[number].child[k];
+        }
     }
 }
 
@@ -90,13 +124,14 @@ static void search_some(const csg_segment_tree *tree, csg_segment_list list, con
     memcpy(&s.first, first, sizeof s.first);
     s.squared = s.first * 0 + INFINITY;
     s.segment = s.first * CSG_SEGMENT_LANES;
+    const mask all = s.first == s.first;
     bool is_first_known = has_nodes(list); /* below these a bound saves most of the search */
     if (is_first_known)
         search_first_leaves(tree, &s);
     for (uint32_t i = 0; i < list.count; i++) {
         uint32_t item = list.items[i], number = item & ~CSG_SEGMENT_LEAF;
         if (item & CSG_SEGMENT_LEAF)
-            search_leaf(&tree->leaves[number], number, &s);
+            search_leaf(&tree->leaves[number], number, &all, &s);
         else
             search_node(tree, item, &s);
     }

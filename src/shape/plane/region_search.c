@@ -103,13 +103,6 @@ csg_segment_hit csg_segment_nearest_in_leaf(const csg_segment_tree *tree, uint32
     return best;
 }
 
-void csg_segment_nearest_below(const csg_segment_tree *tree, uint32_t node, double x, double y,
-                               csg_segment_hit *best)
-{
-    enum { NO_LEAF = ~CSG_SEGMENT_LEAF };
-    search_node(tree, node, NO_LEAF, x, y, best);
-}
-
 csg_segment_hit csg_segment_nearest(const csg_segment_tree *tree, double x, double y)
 {
     uint32_t first = csg_segment_first_leaf(tree, x, y);

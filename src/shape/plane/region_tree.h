@@ -77,9 +77,6 @@ csg_segment_hit csg_segment_nearest_of(const csg_segment_tree *tree, csg_segment
 uint32_t csg_segment_first_leaf(const csg_segment_tree *tree, double x, double y);
 csg_segment_hit csg_segment_nearest_in_leaf(const csg_segment_tree *tree, uint32_t leaf, double x,
                                             double y);
-/* What is nearer than *best below a node. */
-void csg_segment_nearest_below(const csg_segment_tree *tree, uint32_t node, double x, double y,
-                               csg_segment_hit *best);
 /* How often the loops go around the point. A corner belongs to one of its segments only, so no
  * point sees it twice; between 2 ulp of a segment to either side the answer is that of one side. */
 int csg_segment_winding(const csg_segment_tree *tree, double x, double y);

@@ -38,6 +38,13 @@ static inline double csg_triangle_frame_round(double x)
     return (x + 0x1.8p13) - 0x1.8p13;
 }
 
+/* The same for a point. */
+static inline csg_vec3 csg_triangle_frame_round_point(csg_vec3 p)
+{
+    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
+                         csg_triangle_frame_round(p.z));
+}
+
 /* Of a coordinate on the lattice. */
 static inline int64_t csg_triangle_frame_steps(double x)
 {

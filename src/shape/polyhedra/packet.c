@@ -1,33 +1,29 @@
 /* SPDX-License-Identifier: MIT
- * No point of a box is farther from the surface than its middle and half the diagonal, so what lies
- * farther from the box is nearest to none of its points. Any triangle gives a bound for the middle,
- * and one that is not far a good one. Points whose list would be long are searched in halves.
+ * Points that lie together go down the tree together; what was nearest to some is a good bound for
+ * the next.
  */
 #include "shape/polyhedra/packet.h"
 
 #include <string.h>
 
-enum {
-    FEWEST = 4,    /* points for which a list pays */
-    PER_POINT = 8, /* leaves: more of them do not pay */
-    WAITING = 64   /* halvings of a count */
-};
+/* Points for which lanes pay, and for which it pays to bring those together that lie together. */
+enum { FEWEST = 2, WORTH_ORDER = 3 * CSG_SHAPE_LANES };
 
 typedef struct parts {
     const csg_tree *tree;
-    const uint32_t *items; /* NULL: the whole tree */
+    const uint32_t *items;
     uint32_t count;
 } parts;
 
-static csg_triangle_hit search_one(const parts *p, csg_vec3 at, uint32_t *hint)
+/* ---- order ------------------------------------------------------------------------------------
+ */
+
+/* Steps of a box along each of its sides, in which points are put in Morton order. */
+enum { STEP_BITS = 3, STEPS = 1 << STEP_BITS, CELLS = STEPS * STEPS * STEPS };
+
+static uint32_t spread(uint32_t step)
 {
-    csg_triangle_hit hit;
-    if (p->items)
-        hit = csg_tree_nearest_of(p->tree, p->items, p->count, at, *hint);
-    else
-        hit = csg_tree_nearest(p->tree, at, *hint == CSG_TREE_NO_HINT ? 0 : *hint);
-    *hint = hit.place;
-    return hit;
+    return (step & 1) | (step & 2) << 2 | (step & 4) << 4;
 }
 
 static csg_box box_around(const csg_vec3 *at, size_t count)
@@ -45,63 +41,64 @@ static csg_box box_around(const csg_vec3 *at, size_t count)
     return box;
 }
 
-/* False: there are too many. *hint becomes a triangle that is not far from the points. */
-static bool gather_leaves(const parts *p, const csg_vec3 *at, size_t count, uint32_t *hint,
-                          csg_tree_leaves *out)
+/* Numbers of points, those that lie together one after another. */
+static void put_in_order(const csg_vec3 *at, size_t count, uint16_t *order)
 {
-    /* more than the rounding of what is added, in units of the frame */
-    static const double RELATIVE = 0x1p-30, ABSOLUTE = 0x1p-36;
-    static const uint32_t ROOT = 0;
-    const uint32_t *items = p->items ? p->items : &ROOT;
-    uint32_t item_count = p->items ? p->count : 1;
+    uint16_t starts[CELLS + 1] = {0}, cells[CSG_PACKET_MOST];
     csg_box box = box_around(at, count);
-    csg_vec3 center = csg_box_center(box);
-    csg_vec3 half = csg_vec3_scale(csg_vec3_sub(box.max, box.min), 0.5);
-    csg_triangle_hit near = csg_tree_some_near(p->tree, items, item_count, center);
-    double reach = (sqrt(near.squared) + csg_vec3_norm(half)) * (1 + RELATIVE) + ABSOLUTE;
-    size_t most = count * PER_POINT;
-    most = most < CSG_TREE_MOST_LEAVES ? most : CSG_TREE_MOST_LEAVES;
-    *hint = near.place;
-    return csg_tree_gather(p->tree, items, item_count, center, half, reach, (uint32_t)most, out);
+    csg_vec3 side = csg_vec3_sub(box.max, box.min);
+    double longest = fmax(side.x, fmax(side.y, side.z));
+    double per_unit = longest > 0 ? (STEPS - 0x1p-20) / longest : 0;
+    for (size_t i = 0; i < count; i++) {
+        csg_vec3 p = csg_vec3_scale(csg_vec3_sub(at[i], box.min), per_unit);
+        cells[i] = (uint16_t)(spread((uint32_t)p.x) | spread((uint32_t)p.y) << 1 |
+                              spread((uint32_t)p.z) << 2);
+        starts[cells[i] + 1]++;
+    }
+    for (size_t cell = 0; cell < CELLS; cell++)
+        starts[cell + 1] = (uint16_t)(starts[cell + 1] + starts[cell]);
+    for (size_t i = 0; i < count; i++)
+        order[starts[cells[i]]++] = (uint16_t)i;
 }
 
+/* ---- searching --------------------------------------------------------------------------------
+ */
+
 /* The last point is in the lanes that are left over. */
-static void search_lanes(const csg_tree *tree, const csg_shape_kernel *kernel,
-                         const csg_tree_leaves *leaves, const csg_vec3 *at, size_t count,
-                         uint32_t *hint, csg_triangle_hit *out)
+static void search_lanes(const parts *p, const csg_shape_kernel *kernel, const csg_vec3 *at,
+                         const uint16_t *order, size_t count, uint32_t *hint, csg_triangle_hit *out)
 {
     csg_vec3 points[CSG_SHAPE_LANES];
     csg_triangle_hit hits[CSG_SHAPE_LANES];
-    for (size_t i = 0; i < count; i += CSG_SHAPE_LANES) {
-        size_t used = count - i < CSG_SHAPE_LANES ? count - i : CSG_SHAPE_LANES;
-        for (size_t l = 0; l < CSG_SHAPE_LANES; l++)
-            points[l] = at[l < used ? i + l : count - 1];
-        kernel->nearest_triangles(tree, leaves, points, used, *hint, hits);
-        memcpy(out + i, hits, used * sizeof *hits);
-        *hint = hits[used - 1].place;
-    }
+    for (size_t l = 0; l < CSG_SHAPE_LANES; l++)
+        points[l] = at[order[l < count ? l : count - 1]];
+    kernel->nearest_triangles(p->tree, p->items, p->count, points, count, *hint, hits);
+    for (size_t l = 0; l < count; l++)
+        out[order[l]] = hits[l];
+    *hint = hits[count - 1].place;
 }
 
 void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel, const uint32_t *items,
                        uint32_t item_count, const csg_vec3 *at, size_t count, csg_triangle_hit *out)
 {
-    const parts p = {tree, items, item_count};
-    csg_tree_leaves leaves;
+    static const uint32_t ROOT = 0;
+    const parts p = {tree, items ? items : &ROOT, items ? item_count : 1};
     uint32_t hint = CSG_TREE_NO_HINT;
-    size_t ends[WAITING + 1], waiting = 0, first = 0;
-    for (ends[waiting++] = count; waiting;) {
-        size_t end = ends[waiting - 1], part = end - first;
-        bool is_packet = kernel && part >= FEWEST;
-        if (is_packet && gather_leaves(&p, at + first, part, &hint, &leaves)) {
-            search_lanes(tree, kernel, &leaves, at + first, part, &hint, out + first);
-        } else if (is_packet && part >= 2 * (size_t)CSG_SHAPE_LANES) {
-            ends[waiting++] = first + part / 2;
+    uint16_t order[CSG_PACKET_MOST];
+    if (count >= WORTH_ORDER)
+        put_in_order(at, count, order);
+    for (size_t i = 0; i < count && count < WORTH_ORDER; i++)
+        order[i] = (uint16_t)i;
+    for (size_t i = 0, used; i < count; i += used) {
+        used = count - i < CSG_SHAPE_LANES ? count - i : CSG_SHAPE_LANES;
+        if (kernel && used >= FEWEST) {
+            search_lanes(&p, kernel, at, order + i, used, &hint, out);
             continue;
-        } else {
-            for (size_t i = first; i < end; i++)
-                out[i] = search_one(&p, at[i], &hint);
         }
-        first = end;
-        waiting--;
+        for (size_t k = i; k < i + used; k++) {
+            csg_triangle_hit *hit = &out[order[k]];
+            *hit = csg_tree_nearest_of(tree, p.items, p.count, at[order[k]], hint);
+            hint = hit->place;
+        }
     }
 }

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * The triangles nearest to many points. Those that lie together are searched together: the leaves
- * near the box around them are listed once, then points go through the list by lanes
+ * The triangles nearest to many points. Those that lie together go down the tree together
  * (tree_lanes.c).
  */
 #ifndef CSG_SHAPE_PACKET_H
 #define CSG_SHAPE_PACKET_H
 
 #include "shape/shape_kernel.h"
+
+/* Points of a packet at most. */
+enum { CSG_PACKET_MOST = 256 };
 
 /* out[i] is what csg_tree_nearest_of finds for at[i] in these parts of the tree; items NULL: what
  * csg_tree_nearest finds. Points within 2^60 of the frame. kernel: NULL for one by one. */

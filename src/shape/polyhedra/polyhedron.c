@@ -60,7 +60,9 @@ typedef struct walker {
 typedef struct found {
     csg_vec3 at; /* frame units */
     csg_triangle_hit nearest;
-    bool inside;
+    csg_vec3 foot; /* the nearest point, once it was asked for */
+    csg_triangle_part part;
+    bool is_located, inside;
 } found;
 
 /* No triangle, or several. */
@@ -72,14 +74,22 @@ static const double LEAST = 0x1p-36;
 /* Threads may find it twice; they find the same. */
 static bool is_plain(const polyhedron *solid, uint32_t place)
 {
-    if (solid->is_convex)
-        return !solid->tree.triangles[place].is_needle;
     int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
     if (known == PLAIN_UNKNOWN) {
         known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
         atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
     }
     return known == PLAIN_YES;
+}
+
+/* Edges that count as convex may bend the other way by 2^-30 (convex.c): farther from the surface
+ * than this all triangles of a convex solid but needles are as good as plain. */
+static const double CONVEX_BEYOND = 0x1p-28;
+
+static bool is_plain_beyond(const polyhedron *solid, uint32_t place, double free)
+{
+    return solid->is_convex && free > CONVEX_BEYOND ? !solid->tree.triangles[place].is_needle
+                                                    : is_plain(solid, place);
 }
 
 /* Whether no triangle is between them. */
@@ -95,12 +105,6 @@ static bool shares_row(const known_point *from, csg_vec3 p)
     return from->is_set && from->at.y == p.y && from->at.z == p.z;
 }
 
-static csg_vec3 cell_of(csg_vec3 p)
-{
-    return csg_vec3_make(csg_triangle_frame_round(p.x), csg_triangle_frame_round(p.y),
-                         csg_triangle_frame_round(p.z));
-}
-
 static bool box_holds(csg_box box, csg_vec3 p)
 {
     return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
@@ -112,30 +116,40 @@ static csg_vec3 outward(const csg_tree_triangle *t)
     return csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac));
 }
 
-/* The winding number at p, from the triangle that is nearest to it; false: it does not tell. */
-static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *winding)
+static void locate(const polyhedron *solid, found *f)
+{
+    if (!f->is_located)
+        f->foot = csg_triangle_locate(&solid->tree.triangles[f->nearest.place], f->at, &f->part);
+    f->is_located = true;
+}
+
+/* The winding number at a point, from the triangle that is nearest; false: it does not tell. free:
+ * no triangle within. */
+static bool read_side(const polyhedron *solid, found *f, double free, int *winding)
 {
     /* cosines are off by less: the foot is more than LEAST away */
     static const double UNCERTAIN = 1e-3;
     /* No corner of a convex solid is nearest to a point within. Where rounding makes a corner of a
      * foot in the face, the way there is the normal. */
     static const double ALONG = 0.9;
+    uint32_t place = f->nearest.place;
     const csg_tree_triangle *t = &solid->tree.triangles[place];
-    csg_triangle_part part;
-    csg_vec3 foot = csg_triangle_locate(t, p, &part);
-    if (!is_plain(solid, place) || (part == CSG_PART_CORNER && !solid->is_convex))
+    if (!is_plain_beyond(solid, place, free))
         return false;
-    if (part == CSG_PART_FACE) {
-        *winding = csg_vec3_dot(csg_vec3_sub(p, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
+    locate(solid, f);
+    if (f->part == CSG_PART_CORNER && !(solid->is_convex && free > CONVEX_BEYOND))
+        return false;
+    if (f->part == CSG_PART_FACE) {
+        *winding = csg_vec3_dot(csg_vec3_sub(f->at, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
         return true;
     }
-    csg_vec3 away = csg_vec3_sub(p, foot);
-    if (part == CSG_PART_CORNER) {
+    csg_vec3 away = csg_vec3_sub(f->at, f->foot);
+    if (f->part == CSG_PART_CORNER) {
         *winding = 0;
         return csg_vec3_dot(away, outward(t)) > -ALONG * csg_vec3_norm(away);
     }
-    uint32_t other = solid->beside[place][part];
-    if (other == NO_PLACE || !is_plain(solid, other))
+    uint32_t other = solid->beside[place][f->part];
+    if (other == NO_PLACE || !is_plain_beyond(solid, other, free))
         return false;
     csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
@@ -143,28 +157,23 @@ static bool read_side(const polyhedron *solid, csg_vec3 p, uint32_t place, int *
     return fabs(along) > UNCERTAIN * csg_vec3_norm(away);
 }
 
-/* Edges that count as convex may bend the other way by 2^-30: see convex.c. */
-static double nearest_told(const polyhedron *solid)
-{
-    return solid->is_convex ? 0x1p-28 : 0;
-}
-
-/* p is in the box. free: no triangle within. place: of the triangle that is nearest; NO_PLACE: it
- * is not known, nearer ones may be left out of the list. */
-static int find_winding(walker *w, csg_vec3 p, double free, uint32_t place)
+/* f->at is in the box. free: no triangle within. is_known: f->nearest is the nearest of all; nearer
+ * ones may be left out of the list. */
+static int find_winding(walker *w, found *f, double free, bool is_known)
 {
     int winding;
+    csg_vec3 p = f->at;
     if (is_free(&w->last, p, free))
         return w->last.winding;
     if (is_free(&w->row, p, free))
         return w->row.winding;
-    if (free > nearest_told(w->solid) && place != NO_PLACE &&
-        read_side(w->solid, p, place, &winding))
+    if (free > 0 && is_known && read_side(w->solid, f, free, &winding))
         return winding;
     const csg_tree *tree = &w->solid->tree;
     if (shares_row(&w->last, p))
-        return w->last.winding + csg_tree_winding_step(tree, cell_of(p), cell_of(w->last.at));
-    return csg_tree_winding(tree, cell_of(p), NULL);
+        return w->last.winding + csg_tree_winding_step(tree, csg_triangle_frame_round_point(p),
+                                                       csg_triangle_frame_round_point(w->last.at));
+    return csg_tree_winding(tree, csg_triangle_frame_round_point(p), NULL);
 }
 
 /* Member by member: a copy by vectors would wait for what was just written. */
@@ -178,12 +187,13 @@ static void keep_point(known_point *known, csg_vec3 p, double free, int winding)
     known->is_set = true;
 }
 
-static bool is_inside(walker *w, csg_vec3 p, double distance, uint32_t place)
+static bool is_inside(walker *w, found *f, double distance)
 {
+    csg_vec3 p = f->at;
     if (!box_holds(w->solid->tree.box, p))
         return false;
     double free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST;
-    int winding = find_winding(w, p, free, distance < w->limit ? place : NO_PLACE);
+    int winding = find_winding(w, f, free, distance < w->limit);
     if (!shares_row(&w->last, p))
         keep_point(&w->row, p, free, winding);
     keep_point(&w->last, p, free, winding);
@@ -203,7 +213,9 @@ static csg_triangle_hit find_nearest(walker *w, csg_vec3 p)
 
 static found look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest)
 {
-    return (found){p, nearest, is_inside(w, p, sqrt(nearest.squared), nearest.place)};
+    found f = {.at = p, .nearest = nearest};
+    f.inside = is_inside(w, &f, sqrt(nearest.squared));
+    return f;
 }
 
 static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
@@ -240,17 +252,16 @@ static double signed_distance(const polyhedron *solid, const found *f)
 
 /* Of a face: its normal, which is exact however near the point is. Of edges and corners: away from
  * the foot. On the surface: into the solid. */
-static csg_vec3 gradient_of(const polyhedron *solid, const found *f)
+static csg_vec3 gradient_of(const polyhedron *solid, found *f)
 {
     const csg_tree_triangle *t = &solid->tree.triangles[f->nearest.place];
-    bool in_face;
-    csg_vec3 foot = csg_triangle_foot(t, f->at, &in_face);
-    csg_vec3 away = csg_vec3_sub(f->at, foot);
+    locate(solid, f);
+    csg_vec3 away = csg_vec3_sub(f->at, f->foot);
     csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
     if (f->nearest.squared < LEAST * LEAST)
         return inward;
     double sign = f->inside ? 1 : -1;
-    if (in_face)
+    if (f->part == CSG_PART_FACE)
         return csg_vec3_scale(inward, sign * csg_vec3_dot(away, inward) < 0 ? -1 : 1);
     return csg_vec3_scale(csg_vec3_normalize(away), sign);
 }
@@ -274,7 +285,7 @@ static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
 }
 
 /* Points that are searched together, in frame units. */
-enum { PACKET = 64 };
+enum { PACKET = CSG_PACKET_MOST };
 
 typedef struct packet {
     csg_vec3 at[PACKET];
@@ -398,7 +409,8 @@ static bool take_triangle(void *user, uint32_t place)
     taking *t = user;
     const csg_tree_triangle *triangle = &t->solid->tree.triangles[place];
     csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(triangle->ac, triangle->ab));
-    return ++t->count <= MOST && t->take(t->user, inward) && is_plain(t->solid, place);
+    return ++t->count <= MOST && t->take(t->user, inward) &&
+           is_plain_beyond(t->solid, place, INFINITY);
 }
 
 /* Within the ball distances are at most that of c and its radius. */
@@ -494,7 +506,7 @@ static bool is_overlapping(const polyhedron *solid)
         csg_vec3 out = csg_vec3_scale(csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac)), 0x1p-30);
         csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
         for (int k = 0; k < 2; k++) {
-            csg_vec3 cell = cell_of(at[k]);
+            csg_vec3 cell = csg_triangle_frame_round_point(at[k]);
             if (box_holds(solid->tree.box, cell) &&
                 csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
                 return true;

@@ -22,8 +22,7 @@ static bool make_table(csg_table *table, csg_memory *memory, size_t entries)
 static csg_vec3 on_lattice(const csg_triangle_frame *frame, csg_vec3 p)
 {
     csg_vec3 q = csg_triangle_frame_enter(frame, p);
-    return csg_vec3_make(csg_triangle_frame_round(q.x), csg_triangle_frame_round(q.y),
-                         csg_triangle_frame_round(q.z));
+    return csg_triangle_frame_round_point(q);
 }
 
 /* The number of this point; a new one when it was not there. */

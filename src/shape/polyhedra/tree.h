@@ -64,22 +64,6 @@ csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items
 #define CSG_TREE_LEAVES_ONLY 0x80000000u
 #define CSG_TREE_NO_HINT UINT32_MAX
 
-/* A triangle of such parts that is not far, as a bound: seldom the nearest. */
-csg_triangle_hit csg_tree_some_near(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                                    csg_vec3 p);
-
-/* Leaves and their boxes, side by side. */
-enum { CSG_TREE_MOST_LEAVES = 128 };
-typedef struct csg_tree_leaves {
-    float low[3][CSG_TREE_MOST_LEAVES], high[3][CSG_TREE_MOST_LEAVES];
-    uint32_t numbers[CSG_TREE_MOST_LEAVES], count;
-} csg_tree_leaves;
-
-/* Of parts of the tree (item 0: the whole) the leaves that come within `reach` of a box. False:
- * there are more than `most`, or nearly so. */
-bool csg_tree_gather(const csg_tree *tree, const uint32_t *items, uint32_t count, csg_vec3 center,
-                     csg_vec3 half, double reach, uint32_t most, csg_tree_leaves *out);
-
 /* A box or rectangle is passed over only when its squared distance in float is above the best times
  * CSG_TREE_SLACK (tree_nearest.c says why); csg_tree_error: more than positions near a point, and
  * their products with unit vectors, are off in float. */

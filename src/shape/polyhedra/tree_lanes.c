@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * What csg_tree_nearest finds, in leaves near a box, for several points at once, built per
+ * What csg_tree_nearest finds, for several points that go down the tree together, built per
  * instruction set: the lanes are the points, so nothing is compared across them. In double,
  * operations and their order are those of one point (tree_nearest.c), so are the bits; in float,
  * only what is certainly not the nearest is passed over.
  */
-#include "base/four.h"
-#include "shape/shape_kernel.h"
+#include "shape/lane.h"
 
-enum { LANES = CSG_SHAPE_WIDTH };
-
-/* Vector types of gcc and clang, as in region_lanes.c. Places are kept as doubles, which hold them
- * exactly. */
-typedef double lane __attribute__((vector_size(LANES * sizeof(double))));
-typedef int64_t mask __attribute__((vector_size(LANES * sizeof(int64_t)))); /* all ones, or 0 */
+/* Beside doubles: their floats. Places are kept as doubles, which hold them exactly. */
 typedef float narrow __attribute__((vector_size(LANES * sizeof(float))));
 typedef int32_t narrow_mask __attribute__((vector_size(LANES * sizeof(int32_t))));
 
-/* Not functions: vectors wider than the registers have no settled way to be passed to one. */
-#define CHOOSE(is_first, a, b) (lane)(((is_first) & (mask)(a)) | (~(is_first) & (mask)(b)))
 #define POSITIVE(x) (narrow)((narrow_mask)(x) & ((x) > (narrow){0}))
 
 typedef struct search {
@@ -30,15 +22,6 @@ typedef struct search {
 static inline bool is_some(const narrow_mask *m)
 {
     csg_four_mask fours[(sizeof *m + sizeof(csg_four_mask) - 1) / sizeof(csg_four_mask)] = {{0}};
-    memcpy(fours, m, sizeof *m);
-    for (size_t i = 1; i < sizeof fours / sizeof *fours; i++)
-        fours[0] |= fours[i];
-    return csg_four_bits(fours[0]) != 0;
-}
-
-static inline bool is_some_lane(const mask *m)
-{
-    csg_four_mask fours[sizeof *m / sizeof(csg_four_mask)];
     memcpy(fours, m, sizeof *m);
     for (size_t i = 1; i < sizeof fours / sizeof *fours; i++)
         fours[0] |= fours[i];
@@ -127,33 +110,95 @@ static inline bool is_near(const csg_tree_leaf *leaf, uint32_t slot, const searc
     return is_some(&near);
 }
 
-static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, search *s)
+static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, uint32_t hint,
+                            search *s)
 {
     for (uint32_t slot = 0; slot < leaf->count; slot++) {
-        if (!is_near(leaf, slot, s))
-            continue;
         uint32_t place = leaf->first + slot;
+        if (place == hint || !is_near(leaf, slot, s))
+            continue;
         try_triangle(&tree->triangles[place], (double)place, s);
         set_limit(s);
     }
 }
 
-static inline bool is_box_near(const csg_tree_leaves *leaves, uint32_t i, const search *s)
+/* ---- the tree ---------------------------------------------------------------------------------
+ */
+
+/* A node or leaf that waits, and how far its box is from each point. */
+typedef struct entry {
+    narrow squared;
+    uint32_t child;
+} entry;
+
+/* As in tree_nearest.c. */
+enum { STACK = 256 };
+
+typedef struct waiting {
+    entry entries[STACK];
+    size_t depth;
+} waiting;
+
+static inline void measure_box(const csg_tree_node *node, uint32_t slot, const search *s,
+                               narrow *out)
 {
     narrow sum = {0};
     for (int k = 0; k < 3; k++) {
-        narrow below = leaves->low[k][i] - s->at[k], above = s->at[k] - leaves->high[k][i];
+        narrow below = node->low[k][slot] - s->at[k], above = s->at[k] - node->high[k][slot];
         narrow outside = POSITIVE(below) + POSITIVE(above); /* one of them is 0 */
         sum += outside * outside;
     }
-    narrow_mask near = sum <= s->limit;
-    return is_some(&near);
+    *out = sum;
 }
 
-static void search_some(const csg_tree *tree, const csg_tree_leaves *leaves, const csg_vec3 *points,
-                        uint32_t hint, csg_triangle_hit *hits)
+/* What decides the order only. */
+static inline float rank_of(const narrow *squared)
+{
+    return (*squared)[0] + (*squared)[LANES - 1];
+}
+
+/* Pushes the children below an item that may hold something as near as the limit of some point,
+ * the nearest last. */
+static inline void push_near(const csg_tree_node *node, bool leaves_only, const search *s,
+                             waiting *w)
+{
+    size_t bottom = w->depth;
+    for (uint32_t slot = 0; slot < 4; slot++) {
+        if (leaves_only && !(node->children[slot] & CSG_TREE_LEAF))
+            continue;
+        narrow squared;
+        measure_box(node, slot, s, &squared);
+        narrow_mask near = squared <= s->limit;
+        if (!is_some(&near))
+            continue;
+        size_t at = w->depth++;
+        float rank = rank_of(&squared);
+        for (; at > bottom && rank_of(&w->entries[at - 1].squared) < rank; at--)
+            w->entries[at] = w->entries[at - 1];
+        w->entries[at].squared = squared;
+        w->entries[at].child = node->children[slot];
+    }
+}
+
+static inline void search_tree(const csg_tree *tree, uint32_t hint, search *s, waiting *w)
+{
+    while (w->depth) {
+        const entry *next = &w->entries[--w->depth];
+        narrow_mask near = next->squared <= s->limit;
+        if (!is_some(&near))
+            continue;
+        if (next->child & CSG_TREE_LEAF)
+            try_leaf(tree, &tree->leaves[next->child & ~CSG_TREE_LEAF], hint, s);
+        else
+            push_near(&tree->nodes[next->child], false, s, w);
+    }
+}
+
+static void search_some(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                        const csg_vec3 *points, uint32_t hint, csg_triangle_hit *hits)
 {
     search s;
+    waiting w;
     double at[3][LANES];
     float error[LANES];
     for (int l = 0; l < LANES; l++) {
@@ -171,21 +216,25 @@ static void search_some(const csg_tree *tree, const csg_tree_leaves *leaves, con
     s.at[2] = __builtin_convertvector(s.z, narrow);
     s.squared = s.x * 0 + INFINITY;
     s.place = s.x * 0;
-    try_triangle(&tree->triangles[hint], (double)hint, &s);
+    if (hint != CSG_TREE_NO_HINT)
+        try_triangle(&tree->triangles[hint], (double)hint, &s);
     set_limit(&s);
-    for (uint32_t i = 0; i < leaves->count; i++)
-        if (is_box_near(leaves, i, &s))
-            try_leaf(tree, &tree->leaves[leaves->numbers[i]], &s);
+    w.depth = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_tree_node *node = &tree->nodes[items[i] & ~CSG_TREE_LEAVES_ONLY];
+        push_near(node, items[i] & CSG_TREE_LEAVES_ONLY, &s, &w);
+        search_tree(tree, hint, &s, &w);
+    }
     for (int l = 0; l < LANES; l++)
         hits[l] = (csg_triangle_hit){s.squared[l], (uint32_t)s.place[l], 0};
 }
 
-void CSG_SHAPE_BUILD(csg_nearest_triangles)(const csg_tree *tree, const csg_tree_leaves *leaves,
-                                            const csg_vec3 *points, size_t used, uint32_t hint,
-                                            csg_triangle_hit *hits)
+void CSG_SHAPE_BUILD(csg_nearest_triangles)(const csg_tree *tree, const uint32_t *items,
+                                            uint32_t count, const csg_vec3 *points, size_t used,
+                                            uint32_t hint, csg_triangle_hit *hits)
 {
     for (size_t l = 0; l < used; l += LANES) {
-        search_some(tree, leaves, points + l, hint, hits + l);
+        search_some(tree, items, count, points + l, hint, hits + l);
         hint = hits[l].place;
     }
 }

@@ -266,15 +266,6 @@ csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items
     return best;
 }
 
-csg_triangle_hit csg_tree_some_near(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                                    csg_vec3 p)
-{
-    csg_triangle_hit best = {INFINITY, UINT32_MAX, 0};
-    query q = query_of(p, best.squared);
-    try_leaf(tree, near_leaf(tree, items, count, q.p), p, &q, &best);
-    return best;
-}
-
 /* A box, wider by more than its own rounding; the limit is a square. */
 typedef struct inquiry {
     float low[3], high[3], limit;
@@ -341,49 +332,6 @@ uint32_t csg_tree_narrow(const csg_tree *tree, const uint32_t *among, uint32_t a
             queue[end++] = opened[i];
     }
     return done;
-}
-
-/* ---- leaves near a box ------------------------------------------------------------------------
- */
-
-static void add_leaf(const csg_tree_node *node, uint32_t child, csg_tree_leaves *out)
-{
-    uint32_t at = out->count++;
-    out->numbers[at] = node->children[child] & ~CSG_TREE_LEAF;
-    for (int k = 0; k < 3; k++) {
-        out->low[k][at] = node->low[k][child];
-        out->high[k][at] = node->high[k][child];
-    }
-}
-
-bool csg_tree_gather(const csg_tree *tree, const uint32_t *items, uint32_t count, csg_vec3 center,
-                     csg_vec3 half, double reach, uint32_t most, csg_tree_leaves *out)
-{
-    uint32_t stack[STACK];
-    inquiry q = inquiry_of(center, half, reach);
-    out->count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        size_t depth = 0;
-        stack[depth++] = items[i];
-        while (depth) {
-            uint32_t item = stack[--depth];
-            const csg_tree_node *node = node_of(tree, item);
-            unsigned is_leaf = csg_four_bits(leaf_mask(node)),
-                     near = csg_four_bits(comes_near(node, &q));
-            if (item & CSG_TREE_LEAVES_ONLY)
-                near &= is_leaf;
-            if (out->count + 4 > most)
-                return false;
-            for (; near; near &= near - 1) {
-                uint32_t child = (uint32_t)__builtin_ctz(near);
-                if (is_leaf >> child & 1)
-                    add_leaf(node, child, out);
-                else
-                    stack[depth++] = node->children[child];
-            }
-        }
-    }
-    return true;
 }
 
 bool csg_tree_within(const csg_tree *tree, csg_vec3 p, double reach, csg_tree_visit *visit,

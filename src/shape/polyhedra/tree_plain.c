@@ -167,8 +167,7 @@ static int winding_beside(const csg_tree *tree, const csg_tree_triangle *t, doub
     csg_vec3 middle = csg_vec3_add(t->a, csg_vec3_scale(csg_vec3_add(t->ab, t->ac), 1.0 / 3));
     csg_vec3 out = csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac));
     csg_vec3 at = csg_vec3_add(middle, csg_vec3_scale(out, way * 0x1p-30));
-    csg_vec3 cell = {csg_triangle_frame_round(at.x), csg_triangle_frame_round(at.y),
-                     csg_triangle_frame_round(at.z)};
+    csg_vec3 cell = csg_triangle_frame_round_point(at);
     bool inside = cell.x >= tree->box.min.x && cell.x <= tree->box.max.x &&
                   cell.y >= tree->box.min.y && cell.y <= tree->box.max.y &&
                   cell.z >= tree->box.min.z && cell.z <= tree->box.max.z;

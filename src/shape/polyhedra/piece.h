@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Convex pieces of a triangle, for the search of the largest distance: how far a piece can be from
- * a triangle of the other mesh, and how it is cut so that this is better known.
+ * Convex pieces of a triangle, for the search of the largest distance to another mesh: how far a
+ * piece can be from a triangle of that, and how it is cut so that this is better known.
  */
-#ifndef CSG_DIFF_PIECE_H
-#define CSG_DIFF_PIECE_H
+#ifndef CSG_SHAPE_PIECE_H
+#define CSG_SHAPE_PIECE_H
 
 #include "shape/polyhedra/tree.h"
 
@@ -24,6 +24,14 @@ double csg_piece_radius(const csg_piece *piece, csg_vec3 center);
 double csg_piece_bound(const csg_piece *piece, const csg_tree_triangle *triangle, uint32_t *corner);
 double csg_triangle_distance(const csg_tree_triangle *triangle, csg_vec3 p);
 
+/* How exactly distances to a tree's triangles are computed, frame units. */
+double csg_piece_slack(const csg_tree *tree);
+
+/* Parts that together are the piece, with its bound and hint: at most CSG_PIECE_PARTS. By the edges
+ * of the triangle that is nearest to `center`, in the piece; where that is nearest beside its face,
+ * and where it would not help, across the longest extent. Less than 2: too small to be cut. */
+uint32_t csg_piece_divide(const csg_piece *piece, const csg_tree_triangle *triangle,
+                          csg_vec3 center, csg_piece *parts);
 /* Parts that together are the piece, their bound not set: at most CSG_PIECE_PARTS. Across its
  * longest extent; 1: too small to be cut. */
 uint32_t csg_piece_halve(const csg_piece *piece, csg_piece *parts);

@@ -2,7 +2,7 @@
  * Convex polygons and their cuts by planes; see piece.h. Cuts are rounded: parts may leave gaps of
  * some 2^-50 of the frame, which the slack of a side covers.
  */
-#include "diff/piece.h"
+#include "shape/polyhedra/piece.h"
 
 csg_vec3 csg_piece_center(const csg_piece *piece)
 {
@@ -157,4 +157,38 @@ uint32_t csg_piece_cut(const csg_piece *piece, const csg_tree_triangle *triangle
     /* a polygon that is only a line and lies on an edge's plane is on both sides of it, whole: no
      * cut */
     return most < PART_MOST * whole ? count : 0;
+}
+
+uint32_t csg_piece_divide(const csg_piece *piece, const csg_tree_triangle *triangle,
+                          csg_vec3 center, csg_piece *parts)
+{
+    bool in_face;
+    csg_triangle_foot(triangle, center, &in_face);
+    uint32_t count = in_face ? csg_piece_cut(piece, triangle, parts) : 0;
+    if (count < 2)
+        count = csg_piece_halve(piece, parts);
+    for (uint32_t i = 0; i < count; i++) {
+        parts[i].bound = piece->bound;
+        parts[i].hint = piece->hint;
+    }
+    return count;
+}
+
+/* What rounding in double can make of the distance to one triangle: its normal is off by 2^-51 over
+ * its thinness, over the length of the triangle; needles are taken for their edges. */
+static double slack_of(const csg_tree_triangle *t)
+{
+    csg_vec3 bc = csg_vec3_sub(t->ac, t->ab), normal = csg_vec3_cross(t->ab, t->ac);
+    double longest2 =
+        fmax(csg_vec3_dot(bc, bc), fmax(csg_vec3_dot(t->ab, t->ab), csg_vec3_dot(t->ac, t->ac)));
+    double longest = sqrt(longest2);
+    return t->is_needle ? 0x1p-26 * longest : 0x1p-50 * longest * longest2 / csg_vec3_norm(normal);
+}
+
+double csg_piece_slack(const csg_tree *tree)
+{
+    double most = 0;
+    for (size_t i = 0; i < tree->count; i++)
+        most = fmax(most, slack_of(&tree->triangles[i]));
+    return most + 0x1p-48;
 }
