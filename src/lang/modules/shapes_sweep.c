@@ -1,11 +1,41 @@
 /* SPDX-License-Identifier: MIT
- * tube and spline: points and radii (solid/tubes.c has the rest).
+ * tube, spline and sweep: points, radii and what is wrong with a path (solid/tubes.c, path.c and
+ * along.c have the rest).
  */
 #include <math.h>
 
 #include "base/scene_codes.h"
 #include "lang/modules/shapes.h"
+#include "solid/along.h"
 #include "solid/operations.h"
+
+/* ---- points ---------------------------------------------------------------------------------- */
+
+/* How many points are in the list; 0 after a report that there are too few. */
+static uint32_t count_points(csg_module_call *call, uint32_t index, uint32_t least)
+{
+    csg_value value = call->values[index];
+    uint32_t count = value.kind == CSG_VALUE_VECTOR ? value.as.vector->count : 0;
+    if (count >= least)
+        return count;
+    csg_argument_error(call, index, CSG_DIAG_BAD_TYPE, "%s must be a list of at least %s [x, y, z]",
+                       call->parameters[index].name, least == 2 ? "two" : "three");
+    return 0;
+}
+
+/* Point i of a list, [x, y] with z = 0; reports what is none. */
+static csg_vec3 read_point(csg_module_call *call, uint32_t index, uint32_t i)
+{
+    double v[3] = {0, 0, 0};
+    csg_value point = call->values[index].as.vector->items[i];
+    bool known = csg_value_numbers(point, 3, v) || csg_value_numbers(point, 2, v);
+    if (!known || !isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
+        csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "%s[%u] is not [x, y, z]",
+                           call->parameters[index].name, i);
+    return csg_vec3_make(v[0], v[1], v[2]);
+}
+
+/* ---- tube and spline ------------------------------------------------------------------------- */
 
 typedef struct knot_list {
     csg_knot *knots;
@@ -39,27 +69,17 @@ static void read_radii(csg_module_call *call, uint32_t index, knot_list *s)
 /* Points and radii; false after a report, or when memory ran out. */
 static bool read_knots(csg_module_call *call, uint32_t points, uint32_t radii, knot_list *s)
 {
-    csg_value value = call->values[points];
-    if (value.kind != CSG_VALUE_VECTOR || value.as.vector->count < 2) {
-        csg_argument_error(call, points, CSG_DIAG_BAD_TYPE,
-                           "points must be a list of at least two [x, y, z]");
+    size_t count = count_points(call, points, 2);
+    if (!count)
         return false;
-    }
-    size_t count = value.as.vector->count;
     s->knots = csg_memory_alloc(call->e->heap.memory, count * sizeof *s->knots);
     if (!s->knots) {
         csg_eval_no_memory(call->e);
         return false;
     }
     s->count = count;
-    for (uint32_t i = 0; i < count; i++) {
-        double v[3] = {0, 0, 0};
-        bool known = csg_value_numbers(value.as.vector->items[i], 3, v) ||
-                     csg_value_numbers(value.as.vector->items[i], 2, v);
-        if (!known || !isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
-            csg_argument_error(call, points, CSG_DIAG_BAD_POINTS, "points[%u] is not [x, y, z]", i);
-        s->knots[i] = (csg_knot){csg_vec3_make(v[0], v[1], v[2]), 1};
-    }
+    for (uint32_t i = 0; i < count; i++)
+        s->knots[i] = (csg_knot){read_point(call, points, i), 1};
     read_radii(call, radii, s);
     return !call->failed;
 }
@@ -113,4 +133,111 @@ csg_node_id csg_module_spline(csg_module_call *call)
     }
     release_knots(call, &s);
     return call->failed ? csg_shape_empty(call) : node;
+}
+
+/* ---- sweep ----------------------------------------------------------------------------------- */
+
+enum { PATH, CLOSED_PATH, SMOOTH, ROUND, PATH_TWIST, UP, UPRIGHT };
+
+static void tell_of_path(csg_module_call *call, const csg_path_finding *found)
+{
+    uint32_t at = found->at, other = found->other;
+    switch (found->fault) {
+    case CSG_PATH_SOUND:
+        break;
+    case CSG_PATH_NO_MEMORY:
+        csg_eval_no_memory(call->e);
+        break;
+    case CSG_PATH_COINCIDES:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS, "path[%u] and path[%u] are one point%s",
+                           other, at,
+                           at == 0 ? ": a closed path comes back to its first by itself" : "");
+        break;
+    case CSG_PATH_TURNS_BACK:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS, "the path turns back at path[%u]", at);
+        break;
+    case CSG_PATH_BENDS_MEET:
+        csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE,
+                           "arcs of radius %g at path[%u] and path[%u] need %.6g, the points are "
+                           "%.6g apart",
+                           call->values[ROUND].as.number, at, other, found->needed, found->there);
+        break;
+    case CSG_PATH_RUNS_UP:
+        csg_argument_error(call, UPRIGHT, CSG_DIAG_OUT_OF_RANGE,
+                           "the path runs along up after path[%u], where nothing is upright", at);
+        break;
+    case CSG_PATH_TOO_THICK:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS,
+                           "the figure reaches %.6g inwards, the path's radius after path[%u] is "
+                           "%.6g",
+                           found->needed, at, found->there);
+        break;
+    case CSG_PATH_TURNS_THICK:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS,
+                           "the figure turns along an arc after path[%u] and reaches %.6g, more "
+                           "than half the path's radius there, %.6g",
+                           at, found->needed, found->there);
+        break;
+    case CSG_PATH_TOO_SHORT:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS,
+                           "the mitres at path[%u] and path[%u] need %.6g for this figure, the "
+                           "points are %.6g apart",
+                           at, other, found->needed, found->there);
+        break;
+    case CSG_PATH_CANNOT_TURN:
+        csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS,
+                           "the figure cannot turn between path[%u] and path[%u]: the mitres take "
+                           "%.6g of %.6g",
+                           at, other, found->needed, found->there);
+        break;
+    }
+}
+
+/* Without the points. */
+static csg_path_shape read_path(csg_module_call *call)
+{
+    csg_path_shape s = {.closed = csg_argument_boolean(call, CLOSED_PATH),
+                        .smooth = csg_argument_boolean(call, SMOOTH),
+                        .upright = csg_argument_boolean(call, UPRIGHT),
+                        .round = csg_argument_number(call, ROUND, 0, CSG_NOT_NEGATIVE),
+                        .twist = csg_argument_number(call, PATH_TWIST, 0, CSG_ANY),
+                        .up = csg_argument_vector(call, UP, csg_vec3_make(0, 0, 1), false)};
+    if (s.smooth && s.round > 0)
+        csg_argument_error(call, ROUND, CSG_DIAG_OUT_OF_RANGE,
+                           "a smooth path has no corners to be round");
+    if (!call->failed && !(csg_vec3_norm(s.up) > 0))
+        csg_argument_error(call, UP, CSG_DIAG_OUT_OF_RANGE, "up is zero");
+    return s;
+}
+
+static csg_node_id swept(csg_module_call *call, const csg_path_shape *shape, csg_node_id flat)
+{
+    csg_path path;
+    csg_path_finding found;
+    csg_node_id node = CSG_NODE_NONE;
+    if (csg_path_make(&path, call->e->heap.memory, shape, &found)) {
+        csg_solid_job job = csg_shape_job(call);
+        node = csg_shape_made(call, &job, csg_solid_along(&job, flat, &path, &found));
+    }
+    csg_path_release(&path);
+    tell_of_path(call, &found);
+    return call->failed ? csg_shape_empty(call) : node;
+}
+
+csg_node_id csg_module_sweep(csg_module_call *call)
+{
+    csg_eval *e = call->e;
+    csg_path_shape shape = read_path(call);
+    csg_vec3 *points = NULL;
+    shape.count = count_points(call, PATH, shape.closed ? 3 : 2);
+    if (shape.count && !(points = csg_memory_alloc(e->heap.memory, shape.count * sizeof *points)))
+        csg_eval_no_memory(e);
+    for (uint32_t i = 0; i < shape.count && points; i++)
+        points[i] = read_point(call, PATH, i);
+    shape.points = points;
+    csg_node_id flat = csg_shape_children(call, true);
+    if (flat != CSG_NODE_NONE && !e->stop && !csg_eval_is_empty(e, flat))
+        flat = call->failed ? csg_shape_empty(call) : swept(call, &shape, flat);
+    csg_memory_release(e->heap.memory, points, shape.count * sizeof *points);
+    return flat;
 }
