@@ -15,6 +15,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "lang/bench_failing.h"
 #include "lang/bench_fixture.h"
 #include "scene/boxes/bounds.h"
 #include "scene/reference.h"
@@ -334,6 +335,20 @@ static void random_paths_keep_their_promises(void **state)
     assert_true(made > 20 * times);
 }
 
+static csgm_status attempt(bench *poor)
+{
+    static const char scene[] =
+        "sweep([[0,0,0], [9,0,0], [9,9,0]], closed = true, round = 2, twist = 20)"
+        " square(1, center = true);";
+    return bench_compile_bytes(poor, scene, sizeof scene - 1, NULL);
+}
+
+static void any_allocation_may_fail(void **state)
+{
+    (void)state;
+    assert_true(bench_fail_every(attempt, 60, 12) > 60);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -341,6 +356,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_turn_with_the_tangent_alone),
         cmocka_unit_test(paths_that_turn_come_where_they_shall),
         cmocka_unit_test(sweeps_have_the_volume_of_pappus),
+        cmocka_unit_test(any_allocation_may_fail),
         cmocka_unit_test(random_paths_keep_their_promises),
     };
     if (argc > 1)

@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "base/random.h"
+#include "lang/bench_failing.h"
 #include "lang/bench_fixture.h"
 #include "scene/formula/formula.h"
 #include "scene/reference.h"
@@ -282,10 +283,24 @@ static void what_is_no_radius_is_refused(void **state)
                    "not between figures");
 }
 
+static csgm_status attempt(bench *poor)
+{
+    static const char scene[] = "difference(blend = function (p) 2 + p.x * 3) { sphere(0.5);"
+                                " sphere(0.4); union() { } cube(0.3); }";
+    return bench_compile_bytes(poor, scene, sizeof scene - 1, NULL);
+}
+
+static void any_allocation_may_fail(void **state)
+{
+    (void)state;
+    assert_true(bench_fail_every(attempt, 80, 12) > 60);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_radii_keep_their_promises),
+        cmocka_unit_test(any_allocation_may_fail),
         cmocka_unit_test(values_are_enclosed),
         cmocka_unit_test(what_is_no_radius_is_refused),
     };
