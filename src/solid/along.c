@@ -76,6 +76,8 @@ static bool is_corner_after(const csg_path *path, size_t i)
 static span measure(const sweeping *s, size_t i)
 {
     const csg_path_piece *piece = &s->path->pieces[i];
+    /* a little more than the corners need, which lie within a circle; the planes cut it off */
+    const double room = 1e-3 * s->reach;
     span out = {.low = 0, .high = piece->length};
     csg_path_frame end = end_frame(piece);
     csg_vec3 first = csg_path_joint(s->path, i), second = joint_after(s->path, i);
@@ -89,6 +91,8 @@ static span measure(const sweeping *s, size_t i)
         out.low = fmax(out.low, from);
         out.high = fmin(out.high, piece->length + to);
     }
+    out.before += begins ? room : 0;
+    out.behind += ends ? room : 0;
     return out;
 }
 

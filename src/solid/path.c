@@ -328,8 +328,7 @@ static bool check_points(tracing *t)
     for (uint32_t i = 0; i < s->count; i++)
         box = csg_box_hull(box, (csg_box){s->points[i], s->points[i]});
     double least = SAME * csg_vec3_norm(csg_box_size(box));
-    uint32_t edges = s->closed ? s->count : s->count - 1;
-    for (uint32_t i = 0; i < edges; i++) {
+    for (uint32_t i = 0; i < s->count; i++) { /* the ends of an open path are apart, too */
         uint32_t next = (i + 1) % s->count;
         if (!(csg_vec3_norm(csg_vec3_sub(s->points[next], s->points[i])) > least))
             return fail(t, CSG_PATH_COINCIDES, next, i, 0, 0);

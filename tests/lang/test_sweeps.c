@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * sweep(): paths with their frames against closed forms, volumes by Pappus, and random paths of all
- * kinds: the field keeps its Lipschitz constant, no joint leaves a wall inside, and nothing is
- * inside that is farther from the path than the figure reaches.
+ * sheet() against closed forms; sweep(): paths with their frames against closed forms, volumes by
+ * Pappus, and random paths of all kinds: the field keeps its Lipschitz constant, no joint leaves a
+ * wall inside, and nothing is inside that is farther from the path than the figure reaches.
  *
  *   test_lang_sweeps [TIMES [SEED]]     so many times as many random paths, from this seed on
  */
@@ -180,6 +180,53 @@ static void sweeps_have_the_volume_of_pappus(void **state)
     }
 }
 
+/* ---- polygons as skeletons ------------------------------------------------------------------- */
+
+/* Steiner's formula: area, edges as half cylinders, corners as parts of one ball. */
+static void sheets_have_the_volume_of_steiner(void **state)
+{
+    (void)state;
+    const char *scene = "sheet([[1,2,0], [1,12,0], [1,12,10], [1,2,10]], 1);";
+    assert_int_equal(compile(scene), CSGM_OK);
+    double wanted = 200 + 20 * PI + 4 * PI / 3;
+    assert_true(fabs(volume(56) - wanted) <= 0.01 * wanted);
+}
+
+/* The distance from a concave polygon in a plane that leans: beside an edge, a corner, the notch
+ * and the face. */
+static void sheets_are_distances(void **state)
+{
+    (void)state;
+    const char *scene = "rotate([30, 0, 0]) translate([0, 0, 3])"
+                        " sheet([[0,0], [8,0], [8,6], [4,2], [0,6]], 0.5);";
+    assert_int_equal(compile(scene), CSGM_OK);
+    const struct {
+        csg_vec3 at; /* where the polygon lies in z = 3 */
+        double distance;
+    } cases[] = {
+        {{4, 1, 5}, 2},  {{11, -4, 3}, 5},
+        {{4, -3, 7}, 5}, {{4, 6, 3}, 2.8284271247461903}, /* of both edges of the notch */
+        {{4, 6, 4}, 3},  {{9, 8, 5}, 3},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        csg_affine lean = csg_affine_rotate(30, csg_vec3_make(1, 0, 0));
+        double value = sample(csg_affine_point(&lean, cases[i].at)).value;
+        assert_true(fabs(value - (0.5 - cases[i].distance)) < 1e-6);
+    }
+}
+
+/* The classical field: P of the distance from the polygon by R = r / d_iso. */
+static void soft_sheets_have_their_own_range(void **state)
+{
+    (void)state;
+    double of_sheet, of_ball;
+    assert_int_equal(compile("soft() sheet([[0,0], [9,0], [9,9]], 2);"), CSGM_OK);
+    of_sheet = sample(csg_vec3_make(6, 2, 2.7)).value;
+    assert_int_equal(compile("soft() sphere(2);"), CSGM_OK);
+    of_ball = sample(csg_vec3_make(0, 0, 2.7)).value;
+    assert_true(fabs(of_sheet - of_ball) < 1e-5);
+}
+
 /* ---- random paths ---------------------------------------------------------------------------- */
 
 typedef struct random_path {
@@ -356,6 +403,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_turn_with_the_tangent_alone),
         cmocka_unit_test(paths_that_turn_come_where_they_shall),
         cmocka_unit_test(sweeps_have_the_volume_of_pappus),
+        cmocka_unit_test(sheets_have_the_volume_of_steiner),
+        cmocka_unit_test(sheets_are_distances),
+        cmocka_unit_test(soft_sheets_have_their_own_range),
         cmocka_unit_test(any_allocation_may_fail),
         cmocka_unit_test(random_paths_keep_their_promises),
     };

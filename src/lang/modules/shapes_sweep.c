@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * tube, spline and sweep: points, radii and what is wrong with a path (solid/tubes.c, path.c and
- * along.c have the rest).
+ * tube, spline, sheet and sweep: points, radii and what is wrong with a path (solid/tubes.c, path.c
+ * and along.c have the rest).
  */
 #include <math.h>
 
@@ -33,6 +33,20 @@ static csg_vec3 read_point(csg_module_call *call, uint32_t index, uint32_t i)
         csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "%s[%u] is not [x, y, z]",
                            call->parameters[index].name, i);
     return csg_vec3_make(v[0], v[1], v[2]);
+}
+
+/* All of them; NULL after a report. */
+static csg_vec3 *read_points(csg_module_call *call, uint32_t index, uint32_t least, uint32_t *count)
+{
+    *count = count_points(call, index, least);
+    if (!*count)
+        return NULL;
+    csg_vec3 *points = csg_memory_alloc(call->e->heap.memory, *count * sizeof *points);
+    for (uint32_t i = 0; i < *count && points; i++)
+        points[i] = read_point(call, index, i);
+    if (!points)
+        csg_eval_no_memory(call->e);
+    return points;
 }
 
 /* ---- tube and spline ------------------------------------------------------------------------- */
@@ -135,6 +149,77 @@ csg_node_id csg_module_spline(csg_module_call *call)
     return call->failed ? csg_shape_empty(call) : node;
 }
 
+/* ---- sheet ----------------------------------------------------------------------------------- */
+
+/* The plane of a polygon, by Newell's sum of cross products; false after a report. */
+static bool plane_of(csg_module_call *call, uint32_t index, const csg_vec3 *points, uint32_t count,
+                     csg_affine *frame)
+{
+    const double flat = 1e-6; /* of the size */
+    csg_vec3 sum = {0, 0, 0};
+    double size = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        csg_vec3 a = csg_vec3_sub(points[i], points[0]);
+        csg_vec3 to = csg_vec3_sub(points[(i + 1) % count], points[0]);
+        sum = csg_vec3_add(sum, csg_vec3_cross(a, to));
+        size = fmax(size, csg_vec3_norm(a));
+    }
+    if (!(csg_vec3_norm(sum) > flat * size * size)) {
+        csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "the points enclose no area");
+        return false;
+    }
+    csg_vec3 normal = csg_vec3_normalize(sum);
+    for (uint32_t i = 1; i < count; i++) {
+        double off = csg_vec3_dot(normal, csg_vec3_sub(points[i], points[0]));
+        if (fabs(off) > flat * size) {
+            csg_argument_error(call, index, CSG_DIAG_BAD_POINTS,
+                               "the points lie in no plane: points[%u] is %.4g off it", i,
+                               fabs(off));
+            return false;
+        }
+    }
+    *frame = csg_affine_z_to(normal);
+    frame->t[0] = points[0].x;
+    frame->t[1] = points[0].y;
+    frame->t[2] = points[0].z;
+    return true;
+}
+
+static csg_node_id sheet(csg_module_call *call, const csg_vec3 *points, uint32_t count,
+                         const csg_affine *frame, double r)
+{
+    csg_outline outline;
+    bool ok = true;
+    csg_outline_init(&outline, call->e->heap.memory);
+    for (uint32_t i = 0; i < count && ok; i++) {
+        csg_vec3 v = csg_vec3_sub(points[i], points[0]);
+        double x = frame->m[0][0] * v.x + frame->m[1][0] * v.y + frame->m[2][0] * v.z;
+        double y = frame->m[0][1] * v.x + frame->m[1][1] * v.y + frame->m[2][1] * v.z;
+        ok = csg_outline_add(&outline, (csg_vec2){x, y});
+    }
+    if (!ok || !csg_outline_close(&outline)) {
+        csg_outline_release(&outline);
+        csg_eval_no_memory(call->e);
+        return CSG_NODE_NONE;
+    }
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_solid_sheet(&job, &outline, frame, r));
+}
+
+csg_node_id csg_module_sheet(csg_module_call *call)
+{
+    enum { POINTS, RADIUS };
+    csg_affine frame;
+    uint32_t count = 0;
+    double r = csg_argument_number(call, RADIUS, 1, CSG_POSITIVE);
+    csg_vec3 *points = read_points(call, POINTS, 3, &count);
+    csg_node_id node = CSG_NODE_NONE;
+    if (points && !call->failed && plane_of(call, POINTS, points, count, &frame))
+        node = sheet(call, points, count, &frame, r);
+    csg_memory_release(call->e->heap.memory, points, count * sizeof *points);
+    return call->failed ? csg_shape_empty(call) : node;
+}
+
 /* ---- sweep ----------------------------------------------------------------------------------- */
 
 enum { PATH, CLOSED_PATH, SMOOTH, ROUND, PATH_TWIST, UP, UPRIGHT };
@@ -151,7 +236,7 @@ static void tell_of_path(csg_module_call *call, const csg_path_finding *found)
     case CSG_PATH_COINCIDES:
         csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS, "path[%u] and path[%u] are one point%s",
                            other, at,
-                           at == 0 ? ": a closed path comes back to its first by itself" : "");
+                           at == 0 ? ": closed = true comes back to the first by itself" : "");
         break;
     case CSG_PATH_TURNS_BACK:
         csg_argument_error(call, PATH, CSG_DIAG_BAD_POINTS, "the path turns back at path[%u]", at);
@@ -228,12 +313,7 @@ csg_node_id csg_module_sweep(csg_module_call *call)
 {
     csg_eval *e = call->e;
     csg_path_shape shape = read_path(call);
-    csg_vec3 *points = NULL;
-    shape.count = count_points(call, PATH, shape.closed ? 3 : 2);
-    if (shape.count && !(points = csg_memory_alloc(e->heap.memory, shape.count * sizeof *points)))
-        csg_eval_no_memory(e);
-    for (uint32_t i = 0; i < shape.count && points; i++)
-        points[i] = read_point(call, PATH, i);
+    csg_vec3 *points = read_points(call, PATH, shape.closed ? 3 : 2, &shape.count);
     shape.points = points;
     csg_node_id flat = csg_shape_children(call, true);
     if (flat != CSG_NODE_NONE && !e->stop && !csg_eval_is_empty(e, flat))

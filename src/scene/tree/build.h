@@ -101,6 +101,8 @@ csg_node_id csg_build_offset(csg_scene_builder *builder, double r, csg_node_id c
  * is not flat (twisted) is cut sharply. */
 csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
                               double high, csg_span where);
+/* Half the thickness of the plate in a sheet, a polygon as skeleton, for its radius. */
+#define CSG_SHEET_HALF 1e-6
 /* A flat child where |z - middle| <= half: csg_build_extrude in the numbers of its nodes. */
 csg_node_id csg_build_plate(csg_scene_builder *builder, csg_node_id child, double half,
                             double middle, csg_span where);
