@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * tube, spline, sheet and sweep: points, radii and what is wrong with a path (solid/tubes.c, path.c
- * and along.c have the rest).
+ * tube, spline, sheet, patch and sweep: points, radii and what is wrong with a path (solid/tubes.c,
+ * path.c and along.c have the rest).
  */
 #include <math.h>
 
@@ -23,16 +23,23 @@ static uint32_t count_points(csg_module_call *call, uint32_t index, uint32_t lea
     return 0;
 }
 
-/* Point i of a list, [x, y] with z = 0; reports what is none. */
-static csg_vec3 read_point(csg_module_call *call, uint32_t index, uint32_t i)
+/* [x, y, z], or [x, y] with z = 0. */
+static bool is_point(csg_value value, csg_vec3 *out)
 {
     double v[3] = {0, 0, 0};
-    csg_value point = call->values[index].as.vector->items[i];
-    bool known = csg_value_numbers(point, 3, v) || csg_value_numbers(point, 2, v);
-    if (!known || !isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
+    bool known = csg_value_numbers(value, 3, v) || csg_value_numbers(value, 2, v);
+    *out = csg_vec3_make(v[0], v[1], v[2]);
+    return known && isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+/* Point i of a list; reports what is none. */
+static csg_vec3 read_point(csg_module_call *call, uint32_t index, uint32_t i)
+{
+    csg_vec3 point;
+    if (!is_point(call->values[index].as.vector->items[i], &point))
         csg_argument_error(call, index, CSG_DIAG_BAD_POINTS, "%s[%u] is not [x, y, z]",
                            call->parameters[index].name, i);
-    return csg_vec3_make(v[0], v[1], v[2]);
+    return point;
 }
 
 /* All of them; NULL after a report. */
@@ -218,6 +225,55 @@ csg_node_id csg_module_sheet(csg_module_call *call)
         node = sheet(call, points, count, &frame, r);
     csg_memory_release(call->e->heap.memory, points, count * sizeof *points);
     return call->failed ? csg_shape_empty(call) : node;
+}
+
+/* ---- patch ----------------------------------------------------------------------------------- */
+
+static uint32_t length_of(csg_value value)
+{
+    return value.kind == CSG_VALUE_VECTOR ? value.as.vector->count : 0;
+}
+
+/* Reports rows that are none, and patches that take too many triangles. */
+static bool read_patch(csg_module_call *call, csg_vec3 *points, csg_bezier_patch *patch, double r)
+{
+    csg_value rows = call->values[0];
+    for (uint32_t i = 0; i < patch->rows; i++) {
+        csg_value row = rows.as.vector->items[i];
+        if (length_of(row) != patch->columns) {
+            csg_argument_error(call, 0, CSG_DIAG_BAD_POINTS, "row %u has %u points, row 0 has %u",
+                               i, length_of(row), patch->columns);
+            return false;
+        }
+        for (uint32_t k = 0; k < patch->columns; k++)
+            if (!is_point(row.as.vector->items[k], &points[i * patch->columns + k]))
+                csg_argument_error(call, 0, CSG_DIAG_BAD_POINTS, "points[%u][%u] is not [x, y, z]",
+                                   i, k);
+    }
+    patch->points = points;
+    if (!call->failed && !csg_solid_patch_fits(patch, r))
+        csg_argument_error(call, 1, CSG_DIAG_OUT_OF_RANGE,
+                           "a patch of this size needs a larger radius, or several patches");
+    return !call->failed;
+}
+
+csg_node_id csg_module_patch(csg_module_call *call)
+{
+    enum { POINTS, RADIUS };
+    csg_vec3 points[CSG_PATCH_MOST * CSG_PATCH_MOST];
+    csg_bezier_patch patch = {.rows = length_of(call->values[POINTS])};
+    double r = csg_argument_number(call, RADIUS, 1, CSG_POSITIVE);
+    if (patch.rows)
+        patch.columns = length_of(call->values[POINTS].as.vector->items[0]);
+    if (patch.rows < 2 || patch.rows > CSG_PATCH_MOST || patch.columns < 2 ||
+        patch.columns > CSG_PATCH_MOST)
+        csg_argument_error(call, POINTS, CSG_DIAG_BAD_TYPE,
+                           "points must be 2 to %d rows of 2 to %d [x, y, z]", CSG_PATCH_MOST,
+                           CSG_PATCH_MOST);
+    if (call->failed || !read_patch(call, points, &patch, r))
+        return csg_shape_empty(call);
+    csg_solid_job job = csg_shape_job(call);
+    return csg_shape_made(call, &job, csg_solid_patch(&job, &patch, r));
 }
 
 /* ---- sweep ----------------------------------------------------------------------------------- */
