@@ -283,6 +283,17 @@ static void what_is_no_radius_is_refused(void **state)
                    "not between figures");
 }
 
+/* No radius: the sharp operator, with its gradient. */
+static void no_radius_is_sharp(void **state)
+{
+    (void)state;
+    const char *scene = "union(blend = function (p) 0 * p.x) { sphere(2);"
+                        " translate([3, 0, 0]) sphere(2); }";
+    assert_int_equal(bench_compile_bytes(&b, scene, strlen(scene), NULL), CSGM_OK);
+    csg_sample s = sample(csg_vec3_make(1, 0, 0));
+    assert_true(s.value == 1 && s.gradient.x == -1 && s.gradient.y == 0);
+}
+
 static csgm_status attempt(bench *poor)
 {
     static const char scene[] = "difference(blend = function (p) 2 + p.x * 3) { sphere(0.5);"
@@ -299,9 +310,8 @@ static void any_allocation_may_fail(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_radii_keep_their_promises),
-        cmocka_unit_test(any_allocation_may_fail),
-        cmocka_unit_test(values_are_enclosed),
+        cmocka_unit_test(random_radii_keep_their_promises), cmocka_unit_test(no_radius_is_sharp),
+        cmocka_unit_test(any_allocation_may_fail),          cmocka_unit_test(values_are_enclosed),
         cmocka_unit_test(what_is_no_radius_is_refused),
     };
     if (argc > 1)

@@ -175,6 +175,8 @@ static csg_node_id fold(varying *v, const csg_node_id *operands, size_t count)
         v->domain.bounds = csg_box_grow(box, csg_box_longest_side(box) / 16);
     if (!check_radius(v))
         return CSG_NODE_NONE;
+    if (!(v->range[1] > CSG_SMALLEST_LENGTH)) /* as a blend without width */
+        return csg_build_operator(v->builder, v->kind, CSG_SHARP, operands, count, v->where);
     csg_node_id node = operands[0];
     double scale = 1;
     for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++)
