@@ -64,6 +64,23 @@ typedef struct csg_knot { /* of a skeleton */
 csg_node_id csg_solid_tube(csg_solid_job *job, const csg_knot *knots, size_t count, int degree);
 /* Along a Catmull-Rom curve through all knots. */
 csg_node_id csg_solid_spline(csg_solid_job *job, const csg_knot *knots, size_t count, bool closed);
+/* Balls of radius r around all points of a flat polygon, counted by the even-odd rule, in the plane
+ * x, y of `frame`, which keeps lengths; the outline is released. */
+csg_node_id csg_solid_sheet(csg_solid_job *job, csg_outline *outline, const csg_affine *frame,
+                            double r);
+enum { CSG_PATCH_MOST = 16 };
+
+/* Control points of a tensor-product Bezier patch, row after row; 2 to CSG_PATCH_MOST of each. */
+typedef struct csg_bezier_patch {
+    const csg_vec3 *points;
+    uint32_t rows, columns;
+} csg_bezier_patch;
+
+/* Few enough triangles are within a 500th of the radius of the patch. */
+bool csg_solid_patch_fits(const csg_bezier_patch *patch, double r);
+/* Balls of radius r around all points of a patch that fits; the field is within 2.1e-3 r of theirs.
+ */
+csg_node_id csg_solid_patch(csg_solid_job *job, const csg_bezier_patch *patch, double r);
 /* A tube along a curve (scene/primitives/curve.h) as a union of capsules within 1e-4 of its largest
  * radius. */
 csg_node_id csg_solid_capsules(csg_solid_job *job, csg_primitive_kind kind,

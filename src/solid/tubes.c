@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A ball swept along a polyline, Bezier curves or a Catmull-Rom curve, its radius changing with the
- * parameter. A polyline is a union of capsules, a curve one of the scene's tubes
- * along Bezier curves (scene/primitives/curve.h), both exactly.
+ * A ball swept over a flat polygon, or along a polyline, Bezier curves or a Catmull-Rom curve, its
+ * radius changing with the parameter. A polyline is a union of capsules, a curve one of the scene's
+ * tubes along Bezier curves (scene/primitives/curve.h), both exactly.
  */
 #include <math.h>
 #include <string.h>
@@ -164,4 +164,19 @@ csg_node_id csg_solid_capsules(csg_solid_job *job, csg_primitive_kind kind,
             line_to(&s, to);
     }
     return unite_parts(&s);
+}
+
+/* An extrusion by next to nothing is the distance from the polygon; grown by r it is the skeletal
+ * primitive of operators.md 1.1, but for that thickness at the rim. */
+csg_node_id csg_solid_sheet(csg_solid_job *job, csg_outline *outline, const csg_affine *frame,
+                            double r)
+{
+    double half = CSG_SHEET_HALF * r;
+    csg_node_id node = csg_solid_area(job, outline, true);
+    if (node == CSG_NODE_NONE || job->stop)
+        return CSG_NODE_NONE;
+    node = csg_solid_done(job, csg_build_extrude(job->builder, node, -half, half, job->where));
+    if (node != CSG_NODE_NONE)
+        node = csg_solid_grown(job, node, r - half);
+    return csg_solid_moved(job, node, frame);
 }

@@ -70,6 +70,7 @@ def leaf(rng):
         lambda: f"intersection() {{ sphere({size()}); {rng.choice(['gyroid', 'schwarz_p', 'diamond'])}(6, {number(rng, 1, 2)}); }}",
         lambda: f"field(function (p) {size()} - norm(p) - 0.3 * sin(40 * p.x), bounds = [[-12, -12, -12], [12, 12, 12]]);",
         lambda: f"roof() {figure(rng, 0)}",
+        lambda: f"sweep([[0, 0, 0], [14, 0, 0], {vector(rng, 12, 20)}], {rng.choice(['smooth = true', 'round = 2', 'twist = 40'])}) square({small()}, center = true);",
     ])()
 
 

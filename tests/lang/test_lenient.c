@@ -30,7 +30,7 @@ static const row rows[] = {
     {"nobody() cube(1); cube(1);", 201, "it is left out, with what stands under it", 0},
     {"x = nobody(1); echo(x); cube(1);", 202, "the call counts as undef", 2},
     {"x = 3; y = x(1); echo(y); cube(1);", 202, "the call counts as undef", 2},
-    {"sweep() square(1); cube(1);", 207, "it is left out", 0},
+    {"loft() square(1); cube(1);", 207, "it is left out", 0},
     {"cube(\"a\");", 301, "the default is taken", 2},
     {"cube([1, 2]);", 301, "the default is taken", 2},
     {"square([1, 2, 3]);", 301, "the default is taken", 0},

@@ -295,8 +295,16 @@ static inline csg_eval_part csg_part_plain(csg_node_id node)
  * the first one's dimension rules, unless they may be mixed. */
 csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
                            csg_span where);
-csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
-                                 csg_span where);
+/* How: by a blend, or where `radius` is not NULL round by a radius that varies, a formula of the
+ * point (csg_build_varying). */
+typedef struct csg_joining {
+    csg_blend blend;
+    const csg_formula_step *radius;
+    uint32_t radius_count;
+} csg_joining;
+/* The same of parts as they are, figures and solids mixed. */
+csg_node_id csg_join_parts_by(csg_eval *e, size_t first, csg_node_kind kind, csg_joining by,
+                              csg_span where);
 /* Joins them without blend and puts the result on the stack. */
 void csg_join_as_part(csg_eval *e, size_t first, csg_span where);
 /* Of the parts above `first`, takes those of the other dimension off; how many. Empty solids go

@@ -93,19 +93,21 @@ csg_node_id csg_join_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_bl
 {
     if (!e->stop)
         csg_parts_keep_alike(e, first, where);
-    return csg_join_mixed_parts(e, first, kind, blend, where);
+    return csg_join_parts_by(e, first, kind, (csg_joining){.blend = blend}, where);
 }
 
 /* Joins `count` parts that are no regions; the first is what the others join. */
 static csg_node_id join_operands(csg_eval *e, csg_eval_part *parts, size_t count,
-                                 csg_node_kind kind, csg_blend blend, csg_span where)
+                                 csg_node_kind kind, csg_joining by, csg_span where)
 {
     size_t bytes = (count ? count : 1) * sizeof(csg_node_id);
     csg_node_id node = CSG_NODE_NONE, *children = csg_memory_alloc(&e->context->memory, bytes);
     if (children) {
         size_t plain = gather(parts, count, children);
-        node = csg_check_node(
-            e, csg_build_operator(&e->builder, kind, blend, children, plain, where), where);
+        node = by.radius ? csg_build_varying(&e->builder, kind, by.radius, by.radius_count,
+                                             children, plain, where)
+                         : csg_build_operator(&e->builder, kind, by.blend, children, plain, where);
+        node = csg_check_node(e, node, where);
         node = join_wrapped(e, parts, count, node, kind, where);
     } else {
         csg_eval_no_memory(e);
@@ -134,9 +136,9 @@ static size_t put_regions_last(csg_eval_part *parts, size_t count)
     return operands;
 }
 
-static bool blends(const csg_eval_part *parts, size_t count, csg_blend blend)
+static bool blends(const csg_eval_part *parts, size_t count, csg_joining by)
 {
-    bool any = count > 1 && !csg_blend_is_sharp(blend.kind);
+    bool any = count > 1 && (by.radius || !csg_blend_is_sharp(by.blend.kind));
     for (size_t i = 1; i < count; i++)
         any = any || (parts[i].wrapped && !csg_blend_is_sharp(parts[i].blend.kind));
     return any;
@@ -157,18 +159,18 @@ static csg_node_id join_sharply(csg_eval *e, const csg_eval_part *parts, size_t 
         copies[i] =
             csg_part_plain(csg_check_node(e, csg_build_copy(&e->builder, parts[i].node), where));
     if (!e->stop)
-        node = join_operands(e, copies, count, kind, CSG_SHARP, where);
+        node = join_operands(e, copies, count, kind, (csg_joining){.blend = CSG_SHARP}, where);
     csg_memory_release(&e->context->memory, copies, bytes);
     return node;
 }
 
 static csg_node_id join_within(csg_eval *e, csg_eval_part *parts, size_t operands, size_t count,
-                               csg_node_kind kind, csg_blend blend, csg_span where)
+                               csg_node_kind kind, csg_joining by, csg_span where)
 {
     bool is_union = kind == CSG_NODE_UNION;
     csg_node_id node = join_sharply(e, parts, operands, kind, where);
     csg_node_id blended =
-        e->stop ? CSG_NODE_NONE : join_operands(e, parts, operands, kind, blend, where);
+        e->stop ? CSG_NODE_NONE : join_operands(e, parts, operands, kind, by, where);
     for (size_t i = operands; i < count && !e->stop; i++) {
         csg_node_id whole = blended, region = parts[i].node;
         if (i + 1 < count)
@@ -200,8 +202,8 @@ void csg_parts_drop_regions(csg_eval *e, size_t first, const char *name)
         e->part_count = first + operands;
 }
 
-csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, csg_blend blend,
-                                 csg_span where)
+csg_node_id csg_join_parts_by(csg_eval *e, size_t first, csg_node_kind kind, csg_joining by,
+                              csg_span where)
 {
     if (e->stop)
         return CSG_NODE_NONE;
@@ -209,12 +211,12 @@ csg_node_id csg_join_mixed_parts(csg_eval *e, size_t first, csg_node_kind kind, 
     csg_eval_part *parts = count ? e->parts + first : NULL;
     size_t operands = put_regions_last(parts, count);
     put_plain_first(e, parts, operands, kind);
-    bool is_bounded = operands < count && blends(parts, operands, blend);
+    bool is_bounded = operands < count && blends(parts, operands, by);
     if (operands < count && !is_bounded)
         csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, parts[operands].where, NULL,
                         "there is no blend here that this blend_within() could bound");
-    csg_node_id node = is_bounded ? join_within(e, parts, operands, count, kind, blend, where)
-                                  : join_operands(e, parts, operands, kind, blend, where);
+    csg_node_id node = is_bounded ? join_within(e, parts, operands, count, kind, by, where)
+                                  : join_operands(e, parts, operands, kind, by, where);
     e->part_count = first;
     return node;
 }

@@ -156,7 +156,8 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
                            "cosine(3), not a %s%s",
                            csg_value_kind_name(value),
                            value.kind == CSG_VALUE_FUNCTION
-                               ? ": for a radius of its own in each place there is blend_within()"
+                               ? ": a radius that varies, function (p) ..., is for the blend of "
+                                 "union, intersection and difference"
                                : "");
         return sharp;
     }

@@ -5,6 +5,7 @@
 
 #include "base/scene_codes.h"
 #include "lang/evaluate/marks.h"
+#include "lang/modules/formula_call.h"
 #include "lang/modules/shapes.h"
 
 /* A figure of the plane stays in it, as in OpenSCAD: what turns out of it is told and left out. The
@@ -195,19 +196,27 @@ csg_node_id csg_module_color(csg_module_call *call)
 
 static csg_node_id joined_children(csg_module_call *call, csg_node_kind kind)
 {
+    enum { BLEND, MIXED };
     csg_eval *e = call->e;
-    csg_blend blend = csg_argument_blend(call, 0);
-    bool mixed = csg_argument_boolean(call, 1);
-    size_t first = e->part_count;
+    bool varies = csg_argument_is_function(call, BLEND, 1);
+    csg_joining by = {.blend = varies ? CSG_SHARP : csg_argument_blend(call, BLEND)};
+    csg_formula_step *radius = NULL;
+    size_t first = e->part_count, bytes = 0;
+    if (varies)
+        radius = csg_formula_of_function(call, BLEND, 0, &by.radius_count, &bytes);
+    by.radius = call->failed ? NULL : radius;
     /* Only a union may take what a for loop or children() makes one by one: the others would
      * mean something else than in OpenSCAD. */
     csg_run_scope(e, call->statement->children, call->frame, kind == CSG_NODE_UNION);
-    if (!csg_blend_is_sharp(blend.kind) && e->part_count - first < 2)
-        csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, call->spans[0], NULL,
+    if ((varies || !csg_blend_is_sharp(by.blend.kind)) && e->part_count - first < 2)
+        csg_eval_report(e, CSG_DIAG_UNUSED_BLEND, call->spans[BLEND], NULL,
                         "this %s has %s, its blend is not used", call->name,
                         e->part_count == first ? "no children" : "only one child");
-    return mixed ? csg_join_mixed_parts(e, first, kind, blend, call->statement->where)
-                 : csg_join_parts(e, first, kind, blend, call->statement->where);
+    if (!e->stop && !csg_argument_boolean(call, MIXED))
+        csg_parts_keep_alike(e, first, call->statement->where);
+    csg_node_id node = csg_join_parts_by(e, first, kind, by, call->statement->where);
+    csg_memory_release(e->heap.memory, radius, bytes);
+    return node;
 }
 
 csg_node_id csg_module_union(csg_module_call *call)

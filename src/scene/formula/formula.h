@@ -94,6 +94,10 @@ double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *step
  * nothing is known. False: out of memory. */
 bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                         double low, double high, double value[2], double slope[2]);
+/* Bounds of the value in the box, by interval arithmetic on up to a thousand parts of it; infinite
+ * where nothing is known. False: out of memory. */
+bool csg_formula_values(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        csg_box box, double values[2]);
 /* +1, -1 or 0 for each of x, y, z: the formula never falls, never rises, or neither is known (also
  * without memory). */
 void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Lipschitz constants of formulas: found, or tried where somebody states one. The box is split
- * where the bound of the gradient's length is largest, until that is tight, or small enough for the
- * constant, or enough parts were made.
+ * Bounds of formulas over a box, and their Lipschitz constants: found, or tried where somebody
+ * states one. The box is split where the bound of the gradient's length is largest, until that is
+ * tight, or small enough for the constant, or enough parts were made.
  *
  * What refutes a constant is no derivative, which at kinks may belong to neither side, but two
  * points whose values, as intervals, lie too far apart. Where to look for them the derivatives say.
@@ -213,4 +213,37 @@ csg_slope_trial csg_formula_try_lipschitz(csg_memory *memory, const csg_formula_
     csg_slope_trial trial = try_constant(&s, stated);
     csg_memory_release(memory, s.parts, search_bytes(&s));
     return trial;
+}
+
+/* Parts of equal shape, so many halvings deep; one where the box has no end. */
+static void widen(slope_search *s, csg_box box, int depth, double values[2])
+{
+    csg_box low, high;
+    if (depth == 0 || !csg_box_is_finite(box)) {
+        bound_on(s, box);
+        csg_formula_range range = s->bounds[s->count - 1].value;
+        bool known = !isnan(range.low) && !isnan(range.high);
+        values[0] = known ? fmin(values[0], range.low) : -INFINITY;
+        values[1] = known ? fmax(values[1], range.high) : INFINITY;
+        return;
+    }
+    halve(box, &low, &high);
+    widen(s, low, depth - 1, values);
+    widen(s, high, depth - 1, values);
+}
+
+bool csg_formula_values(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
+                        csg_box box, double values[2])
+{
+    slope_search s;
+    int depth = 0;
+    if (!begin_search(&s, memory, steps, count, box))
+        return false;
+    while (2u << depth <= s.most)
+        depth++;
+    values[0] = INFINITY;
+    values[1] = -INFINITY;
+    widen(&s, box, depth, values);
+    csg_memory_release(memory, s.parts, search_bytes(&s));
+    return true;
 }

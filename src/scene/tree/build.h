@@ -101,6 +101,8 @@ csg_node_id csg_build_offset(csg_scene_builder *builder, double r, csg_node_id c
  * is not flat (twisted) is cut sharply. */
 csg_node_id csg_build_extrude(csg_scene_builder *builder, csg_node_id child, double low,
                               double high, csg_span where);
+/* Half the thickness of the plate in a sheet, a polygon as skeleton, for its radius. */
+#define CSG_SHEET_HALF 1e-6
 /* A flat child where |z - middle| <= half: csg_build_extrude in the numbers of its nodes. */
 csg_node_id csg_build_plate(csg_scene_builder *builder, csg_node_id child, double half,
                             double middle, csg_span where);
@@ -121,6 +123,12 @@ csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box 
 csg_node_id csg_build_combine(csg_scene_builder *builder, const csg_formula_step *steps,
                               uint32_t count, double slope, const csg_node_id *children,
                               size_t child_count, csg_span where);
+/* kind: UNION, INTERSECTION or DIFFERENCE of solids, folded from the left, round by the radius
+ * that the formula gives at a point (operators.md 19); outside of the operands' box it is as
+ * at the nearest place in it. Fails where intervals do not show that it is finite and >= 0. */
+csg_node_id csg_build_varying(csg_scene_builder *builder, csg_node_kind kind,
+                              const csg_formula_step *steps, uint32_t count,
+                              const csg_node_id *operands, size_t operand_count, csg_span where);
 /* A deep copy; shapes and formulas are shared. */
 csg_node_id csg_build_copy(csg_scene_builder *builder, csg_node_id node);
 /* The box of the node's solid in its own frame (a bound, not always tight), as far as is known

@@ -254,11 +254,25 @@ static const csg_node *undressed(const csgm_scene *scene, csg_node_id id, double
     return node;
 }
 
+/* What is grown is next to nothing thick: a polygon, at which f is the radius. */
+static double height_of_sheet(const csgm_scene *scene, const csg_node *node)
+{
+    double scale, r = scene->parameters[node->payload];
+    const csg_node *grown = undressed(scene, csg_scene_children(scene, node)[0], &scale);
+    if (!csg_node_is_plate(grown))
+        return 0;
+    const csg_node *slab = undressed(scene, csg_scene_children(scene, grown)[1], &scale);
+    double half = scale * scene->parameters[slab->payload];
+    return half <= 2 * CSG_SHEET_HALF * r ? r + half : 0;
+}
+
 /* f at the skeleton; 0 where there is none with one radius. */
 static double height_of(const csgm_scene *scene, csg_node_id id)
 {
     double scale;
     const csg_node *node = undressed(scene, id, &scale);
+    if (node->kind == CSG_NODE_OFFSET)
+        return scale * height_of_sheet(scene, node);
     if (!csg_node_is_named_primitive(node->kind))
         return 0;
     return scale * csg_primitive_of(node->kind)->depth(csg_scene_parameters(scene, node));
@@ -292,9 +306,10 @@ csg_node_id csg_build_soft(csg_scene_builder *builder, csg_soft soft, csg_node_i
     if (soft.range == 0)
         soft.range = height_of_tube(scene, child) * (1 - iso) / iso;
     if (soft.range == 0)
-        csg_check_fail(builder, CSGM_ERR_SCENE,
-                       "only balls, tubes and tori of one radius have a range of their own; give "
-                       "range =");
+        csg_check_fail(
+            builder, CSGM_ERR_SCENE,
+            "only balls, tubes, tori and sheets of one radius have a range of their own; give "
+            "range =");
     else if (!(soft.range >= CSG_SMALLEST_LENGTH && soft.range <= 1e15))
         csg_check_fail(builder, CSGM_ERR_SCENE, "the range must be above 0, not %g", soft.range);
     if (builder->status != CSGM_OK || !csg_build_reserve_node(builder) ||
