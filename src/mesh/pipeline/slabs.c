@@ -174,23 +174,29 @@ static bool is_needed_below(const csg_mesh_slabs *s, const csg_block *block)
     return false;
 }
 
-static bool keep(csg_mesh_slabs *s, csg_halo *to, const csg_block *block)
+/* Adds a copy of the block. False: out of memory. */
+static bool keep(csg_halo *halo, const csg_block *block)
 {
-    csg_block *copy = csg_arena_alloc(&to->arena, sizeof *copy);
-    if (!copy || !csg_memory_reserve(&s->watch->context->memory, (void **)&to->blocks,
-                                     &to->capacity, to->count + 1, sizeof copy))
-        return false;
-    *copy = *block;
-    to->blocks[to->count++] = copy;
+    if (halo->count == halo->with_spare) {
+        csg_block *fresh = csg_arena_alloc(&halo->arena, sizeof *fresh);
+        if (!fresh || !csg_memory_reserve(halo->arena.memory, (void **)&halo->blocks,
+                                          &halo->capacity, halo->with_spare + 1, sizeof fresh))
+            return false;
+        halo->blocks[halo->with_spare++] = fresh;
+    }
+    *halo->blocks[halo->count++] = *block;
     return true;
 }
 
-static bool keep_needed(csg_mesh_slabs *s, csg_halo *to, csg_block *const *blocks, size_t count)
+static void drop_unneeded(const csg_mesh_slabs *s, csg_halo *halo)
 {
-    for (size_t i = 0; i < count; i++)
-        if (is_needed_below(s, blocks[i]) && !keep(s, to, blocks[i]))
-            return false;
-    return true;
+    for (size_t i = halo->count; i-- > 0;) {
+        csg_block *block = halo->blocks[i];
+        if (is_needed_below(s, block))
+            continue;
+        halo->blocks[i] = halo->blocks[--halo->count];
+        halo->blocks[halo->count] = block;
+    }
 }
 
 csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
@@ -204,12 +210,11 @@ csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
     csg_halo *halo = &s->halo;
     size_t count;
     csg_block *const *blocks = csg_octree_blocks(s->octree, &count);
-    if (halo->arena.memory)
-        csg_arena_reset(&halo->arena);
-    csg_arena_init(&halo->arena, memory);
-    halo->count = 0;
+    halo->arena.memory = memory;
+    csg_arena_reset(&halo->arena);
+    halo->count = halo->with_spare = 0;
     for (size_t i = 0; i < count; i++)
-        if (!keep(s, halo, blocks[i]))
+        if (!keep(halo, blocks[i]))
             return csg_context_no_memory(s->watch->context);
     return CSGM_OK;
 }
@@ -217,16 +222,12 @@ csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
 /* After a slab is made: its lower rim, and what is still needed of the halo before. */
 static csgm_status renew_halo(csg_mesh_slabs *s)
 {
-    csg_halo fresh = s->old_halo;
-    s->old_halo = s->halo;
-    fresh.count = 0;
-    csg_arena_init(&fresh.arena, &s->watch->context->memory);
-    bool done = keep_needed(s, &fresh, s->old_halo.blocks, s->old_halo.count) &&
-                keep_needed(s, &fresh, s->at_hand.block, s->at_hand.count);
-    if (s->old_halo.arena.memory)
-        csg_arena_reset(&s->old_halo.arena);
-    s->halo = fresh;
-    return done ? CSGM_OK : csg_context_no_memory(s->watch->context);
+    s->halo.arena.memory = &s->watch->context->memory;
+    drop_unneeded(s, &s->halo);
+    for (size_t i = 0; i < s->at_hand.count; i++)
+        if (is_needed_below(s, s->at_hand.block[i]) && !keep(&s->halo, s->at_hand.block[i]))
+            return csg_context_no_memory(s->watch->context);
+    return CSGM_OK;
 }
 
 /* The index over the blocks at hand and the halo. */
@@ -269,18 +270,11 @@ csgm_status csg_mesh_leave_slab(csg_mesh_slabs *s, size_t i)
     return i > 0 ? renew_halo(s) : CSGM_OK;
 }
 
-static void release_halo(csg_memory *memory, csg_halo *halo)
-{
-    if (halo->arena.memory)
-        csg_arena_reset(&halo->arena);
-    csg_memory_release(memory, halo->blocks, halo->capacity * sizeof(csg_block *));
-}
-
 void csg_mesh_slabs_release(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    release_halo(memory, &s->halo);
-    release_halo(memory, &s->old_halo);
+    csg_arena_reset(&s->halo.arena);
+    csg_memory_release(memory, s->halo.blocks, s->halo.capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->reachable, s->reachable_capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     csg_table_release(&s->index);

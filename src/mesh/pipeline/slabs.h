@@ -15,11 +15,12 @@ typedef struct csg_slab {
     uint64_t vertices, triangles;
 } csg_slab;
 
-/* Blocks of slabs already made that slabs still to be made touch from below. */
+/* Blocks of slabs already made that slabs still to be made touch from below. Behind them stand
+ * those that are not needed any more, to be used again: a halo takes no more than its largest. */
 typedef struct csg_halo {
     csg_arena arena;
     csg_block **blocks;
-    size_t count, capacity;
+    size_t count, with_spare, capacity;
 } csg_halo;
 
 /* Of a frontier cube; and of all before it. */
@@ -43,7 +44,7 @@ typedef struct csg_mesh_slabs {
     csg_mesh_blocks at_hand; /* of one slab */
     bool is_at_hand;         /* the last one, since it was counted */
     uint64_t vertex_count, triangle_count;
-    csg_halo halo, old_halo;
+    csg_halo halo;
     csg_block **reachable; /* the slab's blocks and the halo's, where there are several slabs */
     size_t reachable_capacity;
     csg_table index;
