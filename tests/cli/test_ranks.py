@@ -135,6 +135,31 @@ class Ranks(cli.CliTest):
         for rank in stats["ranks"][:3]:
             self.assertGreater(rank["halo_cubes"], 0)
 
+    # ---- what it says of itself
+
+    def test_page(self):
+        """Its page reads well, and has the options of csgmesh mesh but for those that it refuses."""
+        page = subprocess.run([PROGRAM, "--man"], capture_output=True, text=True, check=True).stdout
+        options = re.compile(r"\\fB(\\-\\-[\w\\-]+?)\\fR")
+        written = {word.replace("\\-", "-") for word in options.findall(page)}
+        mesh = {word.replace("\\-", "-") for word in options.findall(cli.run("man", "mesh").stdout.decode())}
+        self.assertLess(written, mesh)
+        self.assertIn("--max-memory", written)
+        self.write("ball.txt", cli.BALL)
+        values = {"--tolerance": "0.1", "--quality": "fine", "--triangles": "100", "--simplify": "0.1", "--lod": "3",
+                  "--root": ".", "--depfile": "a.d", "--trace": "a.json", "--cells": "a.ply", "--smooth": "2", "--summary": "bounding-box"}
+        for option in sorted(mesh - written):
+            with self.subTest(option):
+                value = [values[option]] if option in values else []
+                result = self.run_job((1, PROGRAM, "ball.txt", "-r", 20, "-o", "a.ply", option, *value))
+                self.assert_one_message(result, "csgmesh-mpi" if option not in ("--quality", "--triangles") else option)
+        if shutil.which("man"):
+            self.write("page.1", page)
+            result = subprocess.run(["man", "--warnings", "-l", "page.1"], cwd=self.folder, capture_output=True, text=True,
+                                    check=False, env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"})
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("SEE ALSO", result.stdout)
+
     # ---- refusals and faults
 
     def test_refused(self):

@@ -17,6 +17,7 @@
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
 #include "mesh/statistics.h"
+#include "ranks/manual.h"
 #include "ranks/ranks.h"
 
 /* What a rank holds back until it is known whether it has to say it. */
@@ -30,25 +31,13 @@ typedef struct held {
 
 static int refuse_options(cli_app *app)
 {
-    static const struct {
-        int option;
-        const char *name;
-    } refused[] = {{CLI_OPTION_watch, "--watch"},    {CLI_OPTION_lod, "--lod"},
-                   {CLI_OPTION_cells, "--cells"},    {CLI_OPTION_depfile, "--depfile"},
-                   {CLI_OPTION_trace, "--trace"},    {CLI_OPTION_smooth, "--smooth"},
-                   {CLI_OPTION_roots, "--root"},     {CLI_OPTION_sandbox, "--sandbox"},
-                   {CLI_OPTION_summary, "--summary"}};
     const cli_options *o = app->options;
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-        if (o->given[refused[i].option])
-            return cli_usage_error(app, "csgmesh has it", "csgmesh-mpi has no %s", refused[i].name);
+    int status = cli_ranks_refuse_options(app);
+    if (status != CLI_DONE)
+        return status;
     if (!o->resolution && !o->given[CLI_OPTION_cell_size])
         return cli_usage_error(app, "as -r 2048; csgmesh makes the others",
                                "csgmesh-mpi makes meshes of equal cells: give -r or -s");
-    if (o->given[CLI_OPTION_tolerance] || o->given[CLI_OPTION_simplify] || o->improve)
-        return cli_usage_error(app, "csgmesh does that, in one process",
-                               "csgmesh-mpi changes none of the triangles that equal cells give: "
-                               "-e, --simplify and --improve are not for it");
     if (o->outputs.count != 1 || strcmp(o->outputs.items[0], "-") == 0)
         return cli_usage_error(app, "as -o lattice.ply",
                                "csgmesh-mpi writes one file: give one -o");
@@ -279,17 +268,9 @@ static bool is_asked_for(int argc, char **argv, const char *name, const char *le
 static void tell_about(int argc, char **argv)
 {
     if (is_asked_for(argc, argv, "--version", "-V"))
-        printf("csgmesh-mpi %s\n%s\nwith %s\n", csgm_version(), csgm_build_features(),
-               cli_ranks_library());
+        cli_ranks_tell_version(cli_ranks_library());
     else
-        printf(
-            "usage: mpirun -n RANKS csgmesh-mpi SCENE -r CELLS -o FILE [options]\n\n"
-            "Makes one mesh of equal cells with many processes; the file has the bytes that\n"
-            "csgmesh SCENE -r CELLS -o FILE writes. PLY, STL and GLB of one part are written by\n"
-            "all ranks. Options are those of csgmesh mesh (csgmesh mesh --help) but for what\n"
-            "changes triangles (-e, --quality, --triangles, --simplify, --improve), drawings,\n"
-            "--lod, --cells, --depfile, --trace, --watch and --root. A rank has one thread unless\n"
-            "-j says otherwise. --stats has the share of each rank.\n");
+        cli_ranks_tell_help();
 }
 
 int main(int argc, char **argv)
@@ -297,6 +278,10 @@ int main(int argc, char **argv)
     cli_options options = {.command = CLI_MESH};
     cli_app app = {.options = &options, .start_s = cli_now_s(), .console = cli_console_make()};
     held kept = {0};
+    if (argc == 2 && strcmp(argv[1], "--man") == 0) { /* also where MPI cannot be started */
+        cli_ranks_tell_page();
+        return fflush(stdout) == 0 ? CLI_DONE : CLI_TROUBLE;
+    }
     if (!cli_ranks_begin(&argc, &argv))
         return CLI_TROUBLE;
     cli_interrupt_install();
