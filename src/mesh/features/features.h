@@ -221,6 +221,14 @@ bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_
 
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count);
+/* The lists of the features from `first` on, one behind the other, *bytes of them: of csg_memory,
+ * the caller's. NULL: out of memory, or there are none. */
+void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes);
+/* Adds features that were packed so, with their blocks, as they stood behind the same others;
+ * numbered. False: out of memory. */
+bool csg_feature_store_adopt(csg_feature_store *store, const csg_feature *features, size_t count,
+                             const void *lists, size_t list_bytes, const csg_feature_block *blocks,
+                             size_t block_count);
 /* Once all blocks are there. */
 bool csg_feature_store_index(csg_feature_store *store);
 /* Who lies beyond each side; where a crease crosses it, it is to be flipped. Any thread; writes one

@@ -10,6 +10,15 @@
 
 enum { E = CSG_BLOCK_EDGE };
 
+/* Room for so many more of both. */
+static bool reserve(csg_feature_store *store, size_t features, size_t blocks)
+{
+    return csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
+                              store->block_count + blocks, sizeof(csg_feature_block)) &&
+           csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
+                              store->count + features, sizeof(csg_feature));
+}
+
 /* Behind those of the store; their lists in one piece. False: out of memory. */
 static bool copy_features(csg_feature_store *store, const csg_feature *from, size_t count)
 {
@@ -32,10 +41,7 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
     const csg_feature_block *blocks = room->blocks + first;
     size_t from = blocks[0].first;
     size_t features = blocks[count - 1].first + blocks[count - 1].count - from;
-    if (!csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
-                            store->block_count + count, sizeof(csg_feature_block)) ||
-        !csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
-                            store->count + features, sizeof(csg_feature)))
+    if (!reserve(store, features, count))
         return false;
     if (!copy_features(store, room->features + from, features))
         return false;
@@ -45,6 +51,38 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
         store->blocks[store->block_count++] = entry;
     }
     store->count += features;
+    return true;
+}
+
+void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes)
+{
+    *bytes = csg_feature_lists_bytes(store->features + first, store->count - first);
+    uint8_t *packed = *bytes ? csg_memory_alloc(store->memory, *bytes) : NULL, *to = packed;
+    for (size_t i = first; packed && i < store->count; i++) {
+        size_t own = csg_feature_list_bytes(&store->features[i]);
+        memcpy(to, store->features[i].side, own);
+        to += own;
+    }
+    return packed;
+}
+
+bool csg_feature_store_adopt(csg_feature_store *store, const csg_feature *features, size_t count,
+                             const void *lists, size_t list_bytes, const csg_feature_block *blocks,
+                             size_t block_count)
+{
+    if (!count)
+        return true;
+    store->lists.memory = store->memory;
+    void *own = csg_arena_alloc(&store->lists, list_bytes);
+    if (!own || !reserve(store, count, block_count))
+        return false;
+    memcpy(own, lists, list_bytes);
+    memcpy(store->features + store->count, features, count * sizeof *features);
+    memcpy(store->blocks + store->block_count, blocks, block_count * sizeof *blocks);
+    csg_features_lay_out(store->features + store->count, count, own);
+    store->count += count;
+    store->block_count += block_count;
+    store->numbered = store->block_count;
     return true;
 }
 

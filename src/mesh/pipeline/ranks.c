@@ -10,6 +10,7 @@
 #include "base/pool.h"
 #include "base/ranks.h"
 #include "base/trace.h"
+#include "mesh/pipeline/keep.h"
 
 /* ---- sharing ------------------------------------------------------------------------------------
  */
@@ -104,7 +105,7 @@ typedef struct common {
     uint32_t blocks[3], features;
 } common;
 
-/* Another scene, or another build, would make another mesh. */
+/* Another scene, or another build, would make another mesh, and so would what one has kept. */
 static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
 {
     csgm_context *context = s->watch->context;
@@ -130,7 +131,7 @@ static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
         other++;
     csg_rank_pieces_release(&context->memory, &all);
     if (other == context->ranks->by.count)
-        return CSGM_OK;
+        return csg_ranks_agree(context, csg_mesh_keep_begin(s, &own, sizeof own));
     if (csg_ranks_is_first(context))
         csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
                        "all need the same scene, options and build of csgmesh",
@@ -202,25 +203,12 @@ static bool is_unfair(const csg_mesh_slabs *s)
            5 * most > 8 * (s->vertex_count / ranks->by.count + 1);
 }
 
-/* The lists of a store's features, one behind the other. NULL: out of memory, or *bytes is 0. */
-static void *pack_lists(const csg_feature_store *store, size_t *bytes)
-{
-    *bytes = csg_feature_lists_bytes(store->features, store->count);
-    uint8_t *packed = *bytes ? csg_memory_alloc(store->memory, *bytes) : NULL, *to = packed;
-    for (size_t i = 0; packed && i < store->count; i++) {
-        size_t own = csg_feature_list_bytes(&store->features[i]);
-        memcpy(to, store->features[i].side, own);
-        to += own;
-    }
-    return packed;
-}
-
 /* Everybody's features with their lists: those of the store go, and come back to `all`. */
 static csgm_status gather_lists(csgm_context *context, const csg_feature_store *store,
                                 csgm_status own, csg_feature_store *all)
 {
     size_t bytes = 0, total;
-    void *packed = own == CSGM_OK ? pack_lists(store, &bytes) : NULL, *lists = NULL;
+    void *packed = own == CSGM_OK ? csg_feature_store_pack(store, 0, &bytes) : NULL, *lists = NULL;
     if (bytes && !packed)
         own = csg_context_no_memory(context);
     csg_rank_pieces features;
@@ -308,6 +296,21 @@ static void number_halo(csg_mesh_slabs *s)
         block->first_vertex = (uint32_t)(s->before[s->halo_cells[cell]].vertices + vertex);
         vertex += block->vertex_count;
     }
+}
+
+csgm_status csg_mesh_ranks_resume(csg_mesh_output *o, csg_mesh_slabs *s)
+{
+    size_t end = s->end_cell, left = csg_mesh_keep_skip_made(o, s);
+    if (left == end)
+        return CSGM_OK;
+    s->end_cell = left;
+    s->is_at_hand = false;
+    csgm_status status =
+        find_halo(s) ? csg_mesh_sample_halo(s) : csg_context_no_memory(s->watch->context);
+    s->end_cell = end;
+    if (status == CSGM_OK)
+        number_halo(s);
+    return status;
 }
 
 static csgm_status share_again(csg_mesh_slabs *s)

@@ -26,8 +26,10 @@ csgm_status csg_mesh_walk_octree(csg_mesh_slabs *s, const csg_mesh_input *in)
 /* Frontier cells whose blocks may be in memory at once: as many as half of the memory left can
  * hold, a sixth where creases need the most of it, and not more than take a gigabyte at the very
  * worst (in practice a third of it). */
-static size_t cells_per_slab(const csg_memory *memory, bool sharp)
+size_t csg_mesh_cells_per_slab(const csg_mesh_slabs *s)
 {
+    const csg_memory *memory = &s->watch->context->memory;
+    bool sharp = s->creases->sharp;
     enum { BYTES_PER_CELL = 8 * 600, LEAST_CELLS = 16 }; /* eight blocks with tapes and index */
     uint64_t bytes = (uint64_t)1 << 30;
     if (memory->limit_bytes) {
@@ -43,13 +45,14 @@ static size_t cells_per_slab(const csg_memory *memory, bool sharp)
 csgm_status csg_mesh_divide_slabs(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    size_t cells = s->end_cell - s->first_cell,
-           per_slab = cells_per_slab(memory, s->creases->sharp);
+    size_t cells = s->end_cell - s->first_cell;
+    size_t per_slab = s->cells_per_slab ? s->cells_per_slab : csg_mesh_cells_per_slab(s);
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     s->count = cells ? (cells + per_slab - 1) / per_slab : 1;
     s->slabs = csg_memory_alloc(memory, s->count * sizeof(csg_slab));
+    s->to_make = s->count;
     if (!s->slabs) {
-        s->count = 0;
+        s->count = s->to_make = 0;
         return csg_context_no_memory(s->watch->context);
     }
     for (size_t i = 0; i < s->count; i++) {
@@ -130,12 +133,18 @@ csgm_status csg_mesh_count_slabs(csg_mesh_slabs *s)
         csg_slab *slab = &s->slabs[i];
         slab->vertices = s->vertex_count;
         slab->triangles = s->triangle_count;
+        slab->first_block = s->creases->store.block_count;
         begin_part(s, CSGM_STAGE_OCTREE, i);
+        s->is_at_hand = !(s->keeper && s->keeper->load(s, i, &status)) && status == CSGM_OK;
+        if (!s->is_at_hand)
+            continue;
         status = sample_slab(s, slab, &s->vertex_count, &s->triangle_count);
         if (status == CSGM_OK && s->counts)
             note_counts(s, slab);
+        if (status == CSGM_OK && s->keeper)
+            status = s->keeper->counted(s, i);
     }
-    s->is_at_hand = status == CSGM_OK;
+    s->is_at_hand = s->is_at_hand && status == CSGM_OK;
     if (s->octree)
         csg_octree_end_scan(s->octree);
     return status;

@@ -19,6 +19,7 @@
 #include "mesh/statistics.h"
 #include "ranks/manual.h"
 #include "ranks/ranks.h"
+#include "ranks/resume.h"
 
 /* What a rank holds back until it is known whether it has to say it. */
 typedef struct held {
@@ -86,11 +87,14 @@ static void add_text(void *user, const char *text, size_t length)
 
 /* The scene as it was read, and the options that meshes depend on: files can differ where ranks run
  * on several machines. */
-static int compare_scenes(cli_app *app, const cli_work *work, int argc, char **argv)
+static int compare_scenes(cli_app *app, const cli_work *work, const cli_resume *resume, int argc,
+                          char **argv, uint64_t *scene)
 {
     uint64_t hash = 14695981039346656037u;
     csgm_status status =
         csgm_scene_dump(app->context, work->scene, CSGM_DUMP_SCENE, add_text, &hash);
+    *scene = hash;
+    add_text(&hash, resume->is_asked ? "resume" : "", resume->is_asked ? 6 : 0);
     for (int i = 1; i < argc; i++)
         add_text(&hash, argv[i], strlen(argv[i]) + 1);
     if (cli_ranks_most(cli_exit_status(status)) != CLI_DONE)
@@ -135,6 +139,7 @@ static void put_share(cli_json *json, const share *of)
     cli_json_count(json, "vertices", of->work.vertices);
     cli_json_count(json, "triangles", of->work.triangles);
     cli_json_count(json, "received_bytes", of->work.received_bytes);
+    cli_json_count(json, "resumed_cubes", of->work.resumed_cubes);
     cli_json_number(json, "processor_s", of->processor_s);
     cli_json_count(json, "peak_rss_bytes", of->peak_rss_bytes);
     cli_json_count(json, "threads", of->threads);
@@ -208,9 +213,10 @@ static int make_file(cli_app *app, cli_work *work, cli_report *report)
     return status;
 }
 
-static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
+static int mesh_scene(cli_app *app, held *kept, cli_resume *resume, int argc, char **argv)
 {
     cli_work work = {0};
+    uint64_t scene = 0;
     cli_report report = {0};
     csgm_communicator by = cli_ranks_communicator();
     app->flat = cli_drawings_flat(app->options);
@@ -219,11 +225,14 @@ static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
     if (status == CLI_DONE && kept->text) /* warnings of reading are rank 0's to say */
         rewind(app->console.out);
     if (status == CLI_DONE)
-        status = compare_scenes(app, &work, argc, argv);
+        status = compare_scenes(app, &work, resume, argc, argv, &scene);
     if (status == CLI_DONE)
         status = cli_ranks_most(cli_exit_status(csgm_context_join(app->context, &by)));
     if (status == CLI_DONE)
+        status = cli_resume_begin(resume, app, scene);
+    if (status == CLI_DONE)
         status = make_file(app, &work, &report);
+    cli_resume_end(resume, status == CLI_DONE);
     if (status == CLI_DONE)
         cli_certify_tell(app, &work.stats.certify);
     if (status == CLI_DONE && app->options->stats)
@@ -235,6 +244,8 @@ static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
 static int mesh_as_asked(cli_app *app, held *kept, int argc, char **argv)
 {
     cli_problem problem;
+    cli_resume resume = cli_resume_make();
+    cli_resume_take(&resume, &argc, argv);
     bool parsed = cli_options_parse(app->options, CLI_MESH, argc - 1, argv + 1, &problem);
     FILE *out = app->console.out;
     cli_console_configure(&app->console, app->options);
@@ -253,7 +264,7 @@ static int mesh_as_asked(cli_app *app, held *kept, int argc, char **argv)
     if (status == CLI_DONE)
         status = cli_app_open(app);
     status = cli_ranks_most(status);
-    return status == CLI_DONE ? mesh_scene(app, kept, argc, argv) : status;
+    return status == CLI_DONE ? mesh_scene(app, kept, &resume, argc, argv) : status;
 }
 
 /* --version and --help need no other rank. */

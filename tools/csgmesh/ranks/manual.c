@@ -65,15 +65,17 @@ static const char USAGE[] = "mpirun -n RANKS csgmesh-mpi SCENE -r CELLS -o FILE 
 
 void cli_ranks_tell_help(void)
 {
-    printf("usage: %s\n\n"
-           "Makes one mesh of equal cells with many processes; the file has the bytes that\n"
-           "csgmesh SCENE -r CELLS -o FILE writes. PLY, STL and GLB of one part are written by\n"
-           "all ranks. Options are those of csgmesh mesh (csgmesh mesh --help) but for what\n"
-           "changes triangles (-e, --quality, --triangles, --simplify, --improve), drawings,\n"
-           "--lod, --cells, --depfile, --trace, --watch and --root. A rank has one thread unless\n"
-           "-j says otherwise. --stats has the share of each rank. --man prints the page of the\n"
-           "manual.\n",
-           USAGE);
+    printf(
+        "usage: %s\n\n"
+        "Makes one mesh of equal cells with many processes; the file has the bytes that\n"
+        "csgmesh SCENE -r CELLS -o FILE writes. PLY, STL and GLB of one part are written by\n"
+        "all ranks. Options are those of csgmesh mesh (csgmesh mesh --help) but for what\n"
+        "changes triangles (-e, --quality, --triangles, --simplify, --improve), drawings,\n"
+        "--lod, --cells, --depfile, --trace, --watch and --root. A rank has one thread unless\n"
+        "-j says otherwise. --stats has the share of each rank. --resume keeps what is finished\n"
+        "in FILE.resume and goes on with what a job that was stopped has kept there. --man\n"
+        "prints the page of the manual.\n",
+        USAGE);
 }
 
 void cli_ranks_tell_page(void)
@@ -105,7 +107,10 @@ void cli_ranks_tell_page(void)
     for (const cli_option_row *row = NULL; (row = cli_next_option(CLI_MESH, row));)
         if (!row->section && !is_refused(row->id))
             cli_page_option(CLI_MESH, row);
-    puts(".PP\nAnd its own:\n.TP\n.B \\-\\-man\nprint this page");
+    puts(".PP\nAnd its own:\n.TP\n.B \\-\\-resume\nkeep "
+         "what is finished in the folder\n.IR FILE .resume,\nand go on with what an earlier job "
+         "of the same command line has kept\nthat was stopped; a job that is done removes the "
+         "folder\n.TP\n.B \\-\\-man\nprint this page");
     cli_page_status("done", "the input is at fault");
     puts(".SH \"SEE ALSO\"\n.BR csgmesh (1),\n.BR csgmesh\\-mesh (1),\n.BR mpirun (1)");
 }
