@@ -224,12 +224,13 @@ csgm_status csg_mesh_keep_begin(csg_mesh_slabs *s, const void *common, size_t by
         return CSGM_OK;
     csg_arena names;
     csg_arena_init(&names, &context->memory);
-    size_t head_bytes = bytes + 3 * sizeof(uint32_t);
+    const uint32_t own[] = {ranks->by.rank, ranks->by.count, s->workers->count, sizeof(csg_feature),
+                            sizeof(csg_scan)};
+    size_t head_bytes = bytes + sizeof own;
     uint8_t *head = csg_arena_alloc(&names, head_bytes);
     const char *path = csg_arena_printf(&names, "%s/rank-%u", ranks->folder, ranks->by.rank);
     csgm_status status = head && path ? CSGM_OK : csg_context_no_memory(context);
     if (status == CSGM_OK) {
-        const uint32_t own[3] = {ranks->by.rank, ranks->by.count, s->workers->count};
         memcpy(head, common, bytes);
         memcpy(head + bytes, own, sizeof own);
         int error = csg_journal_open(&ranks->journal, &context->memory, path, head, head_bytes);

@@ -17,6 +17,7 @@
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
 #include "mesh/statistics.h"
+#include "ranks/hash.h"
 #include "ranks/manual.h"
 #include "ranks/ranks.h"
 #include "ranks/resume.h"
@@ -80,9 +81,8 @@ static int compare_builds(cli_app *app)
 
 static void add_text(void *user, const char *text, size_t length)
 {
-    uint64_t *hash = user; /* FNV-1a */
-    for (size_t i = 0; i < length; i++)
-        *hash = (*hash ^ (unsigned char)text[i]) * 1099511628211u;
+    uint64_t *hash = user;
+    *hash = cli_hash_add(*hash, text, length);
 }
 
 /* The scene as it was read, and the options that meshes depend on: files can differ where ranks run
@@ -90,7 +90,7 @@ static void add_text(void *user, const char *text, size_t length)
 static int compare_scenes(cli_app *app, const cli_work *work, const cli_resume *resume, int argc,
                           char **argv, uint64_t *scene)
 {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = CLI_HASH_BEGIN;
     csgm_status status =
         csgm_scene_dump(app->context, work->scene, CSGM_DUMP_SCENE, add_text, &hash);
     *scene = hash;

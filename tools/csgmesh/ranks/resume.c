@@ -14,6 +14,7 @@
 
 #include "core/options.h"
 #include "csgmesh/csgmesh.h"
+#include "ranks/hash.h"
 #include "ranks/ranks.h"
 
 /* Lines of a head, and what is other where they differ. */
@@ -52,25 +53,24 @@ static bool is_free(cli_option_id option)
     return false;
 }
 
-static void add_text(uint64_t *hash, const char *text)
+static uint64_t add_text(uint64_t hash, const char *text)
 {
-    for (size_t i = 0; i <= strlen(text); i++)
-        *hash = (*hash ^ (unsigned char)text[i]) * 1099511628211u; /* FNV-1a */
+    return cli_hash_add(hash, text, strlen(text) + 1);
 }
 
 static uint64_t hash_options(const cli_options *o)
 {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = CLI_HASH_BEGIN;
     char name[16];
     for (int i = 0; i < CLI_OPTION_COUNT; i++) {
         if (!o->given[i] || is_free((cli_option_id)i))
             continue;
         snprintf(name, sizeof name, "%d", i);
-        add_text(&hash, name);
-        add_text(&hash, o->texts[i] ? o->texts[i] : "");
+        hash = add_text(hash, name);
+        hash = add_text(hash, o->texts[i] ? o->texts[i] : "");
     }
     for (size_t i = 0; i < o->meta.count; i++)
-        add_text(&hash, o->meta.items[i]);
+        hash = add_text(hash, o->meta.items[i]);
     return hash;
 }
 
