@@ -50,6 +50,17 @@ CSGM_API csgm_communicator csgm_communicator_default(void);
 CSGM_API csgm_status csgm_context_join(csgm_context *context,
                                        const csgm_communicator *communicator);
 
+/* From now on csgm_mesh_build_file of this context keeps what is finished in a folder that exists,
+ * beside the output and on its file system, and takes from there what an earlier job has finished
+ * that was stopped: the file of the mesh, under the name `mesh`, and for each rank what it has
+ * counted and made, `rank-0` and so on. The file has the bytes of a job that was not stopped. What
+ * is kept is of this build, of as many ranks with as many threads, and of one field: another one's
+ * is begun anew; that path, format and options are the same is the caller's care. Where a mesh
+ * cannot be filled by all ranks (see above) it is refused (CSGM_ERR_UNSUPPORTED, reported). Once
+ * the file has its name the rest can go; that, too, is the caller's. NULL: nothing is kept.
+ * CSGM_ERR_ARGUMENT: this process is alone. All ranks call it alike. */
+CSGM_API csgm_status csgm_context_keep(csgm_context *context, const char *folder);
+
 /* What this rank has done in the last csgm_mesh_build or csgm_mesh_build_file since it joined. */
 typedef struct csgm_rank_work {
     uint32_t struct_size;         /* set by csgm_rank_work_default; do not touch */
@@ -57,7 +68,8 @@ typedef struct csgm_rank_work {
     uint64_t halo_cubes;          /* those of other ranks that it sampled, too */
     uint64_t vertices, triangles; /* that it made */
     uint64_t received_bytes;      /* from other ranks */
-    bool shared_again; /* the frontier, by what was counted: all ranks have sampled twice */
+    bool shared_again;      /* the frontier, by what was counted: all ranks have sampled twice */
+    uint64_t resumed_cubes; /* counted, and made, by a job before this one: csgm_context_keep */
 } csgm_rank_work;
 
 /* All zeros but struct_size. */

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mesh_codes.h"
 #include "base/pool.h"
 #include "base/ranks.h"
 #include "io/formats.h"
@@ -94,6 +95,18 @@ static csgm_status stream_file(csgm_context *context, const csgm_field *field,
     return of_stream != CSGM_OK ? of_stream : status == CSGM_OK ? CSGM_ERR_SCENE : status;
 }
 
+/* A mesh that is gathered is made by one rank in the end: there is nothing to go on with. */
+static csgm_status refuse_to_keep(csgm_context *context)
+{
+    if (!context->ranks || !context->ranks->folder)
+        return CSGM_OK;
+    if (csg_ranks_is_first(context))
+        csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
+                       "binary PLY, STL or GLB of a scene without parts and materials can be kept",
+                       "what is finished cannot be kept: the first rank writes this mesh alone");
+    return CSGM_ERR_UNSUPPORTED;
+}
+
 /* Through a mesh in memory. */
 static csgm_status build_and_write(csgm_context *context, const csgm_field *field,
                                    const csgm_mesh_options *options, const char *path,
@@ -141,6 +154,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     csgm_status status = csg_mesh_check_ranks(context, options);
     if (status == CSGM_OK)
         status = csg_ranks_follow(context, status, &streams);
+    if (status == CSGM_OK && !streams)
+        status = refuse_to_keep(context);
     if (status != CSGM_OK)
         return status;
     status = (streams ? stream_file : build_and_write)(context, field, options, path, format,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Processes that make one mesh together: the public face of base/ranks.h.
  */
+#include <string.h>
+
 #include "api/options.h"
 #include "base/ranks.h"
 
@@ -24,6 +26,23 @@ csgm_status csgm_context_join(csgm_context *context, const csgm_communicator *co
         return CSGM_ERR_ARGUMENT;
     csg_ranks_leave(context);
     return own.count > 1 ? csg_ranks_join(context, &own) : CSGM_OK;
+}
+
+csgm_status csgm_context_keep(csgm_context *context, const char *folder)
+{
+    csg_ranks *ranks = context ? context->ranks : NULL;
+    if (!ranks || (folder && !folder[0]))
+        return CSGM_ERR_ARGUMENT;
+    csg_memory_release(&context->memory, ranks->folder, ranks->folder_bytes);
+    ranks->folder = NULL;
+    ranks->folder_bytes = folder ? strlen(folder) + 1 : 0;
+    if (!folder)
+        return CSGM_OK;
+    ranks->folder = csg_memory_alloc(&context->memory, ranks->folder_bytes);
+    if (!ranks->folder)
+        return csg_context_no_memory(context);
+    memcpy(ranks->folder, folder, ranks->folder_bytes);
+    return CSGM_OK;
 }
 
 csgm_status csgm_context_rank_work(const csgm_context *context, csgm_rank_work *out)

@@ -126,12 +126,22 @@ static void *grow(csg_memory *memory, void *data, size_t before, size_t after)
     return fresh;
 }
 
+/* By half; large arrays by an eighth: what they have too much counts against the limit, and their
+ * pages are moved, not copied. */
+static size_t larger_than(size_t capacity, size_t element_bytes)
+{
+    enum { FIRST = 16, LARGE_BYTES = 1 << 22 };
+    if (!capacity)
+        return FIRST;
+    return capacity + capacity / (capacity < LARGE_BYTES / element_bytes ? 2 : 8);
+}
+
 bool csg_memory_reserve(csg_memory *memory, void **data, size_t *capacity, size_t needed,
                         size_t element_bytes)
 {
     if (needed <= *capacity)
         return true;
-    size_t grown = *capacity ? *capacity + *capacity / 2 : 16;
+    size_t grown = larger_than(*capacity, element_bytes);
     if (grown < needed)
         grown = needed;
     if (grown > SIZE_MAX / element_bytes)

@@ -38,8 +38,8 @@ bool csg_memory_has_ended(csg_memory *memory);
 /* size_bytes as allocated; NULL is a no-op. */
 void csg_memory_release(csg_memory *memory, void *pointer, size_t size_bytes);
 
-/* Makes room for at least `needed` elements (doubling) in an array owned by the caller:
- * *data and *capacity are replaced together. */
+/* Makes room for at least `needed` elements in an array owned by the caller, which grows by half,
+ * or by an eighth once it has four megabytes: *data and *capacity are replaced together. */
 bool csg_memory_reserve(csg_memory *memory, void **data, size_t *capacity, size_t needed,
                         size_t element_bytes);
 

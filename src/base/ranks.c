@@ -30,10 +30,21 @@ void csg_ranks_leave(csgm_context *context)
     if (!ranks)
         return;
     size_t count = ranks->by.count;
+    csg_ranks_end_keeping(context);
+    csg_memory_release(&context->memory, ranks->folder, ranks->folder_bytes);
     csg_memory_release(&context->memory, ranks->words, count * sizeof *ranks->words);
     csg_memory_release(&context->memory, ranks->bytes, count * sizeof *ranks->bytes);
     csg_memory_release(&context->memory, ranks, sizeof *ranks);
     context->ranks = NULL;
+}
+
+void csg_ranks_end_keeping(csgm_context *context)
+{
+    csg_ranks *ranks = context->ranks;
+    if (!ranks)
+        return;
+    csg_journal_close(&ranks->journal);
+    ranks->keeps = false;
 }
 
 /* Bytes of all ranks to those that want them; ranks->bytes says how many. */

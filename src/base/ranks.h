@@ -7,6 +7,7 @@
 #define CSG_BASE_RANKS_H
 
 #include "base/context.h"
+#include "base/journal.h"
 #include "csgmesh/ranks.h"
 
 /* What a rank says at the begin of an exchange. */
@@ -19,6 +20,13 @@ typedef struct csg_ranks {
     csg_rank_word *words; /* one for each rank, of the exchange at hand */
     uint64_t *bytes;      /* of each rank in it */
     csgm_rank_work work;
+    /* What a later job can go on with (csgm_context_keep). */
+    char *folder; /* where: NULL, nothing is kept */
+    size_t folder_bytes;
+    bool keeps;          /* of the mesh at hand: its file is in the folder */
+    bool is_begun;       /* and was there before */
+    bool keeps_synced;   /* each record is on the disk before work goes on */
+    csg_journal journal; /* of the mesh at hand: what this rank has finished of it */
 } csg_ranks;
 
 /* The pieces of all ranks, one after the other. */
@@ -35,6 +43,9 @@ static inline bool csg_ranks_is_first(const csgm_context *context)
 {
     return !context->ranks || context->ranks->by.rank == 0;
 }
+
+/* The mesh at hand is done with. */
+void csg_ranks_end_keeping(csgm_context *context);
 
 /* How a stage ends that this rank has ended with `own`: CSGM_OK where all did; else `own`, or, not
  * reported here, what the first rank says that has failed. A process alone: `own`. */

@@ -86,14 +86,24 @@ static csgm_status open_direct(csg_atomic_file *file, int descriptor)
     return file->fd < 0 ? fail(file, errno) : CSGM_OK;
 }
 
-static int open_temporary(csg_atomic_file *file)
+/* Which hidden name a file gets; all NULL: one of its own. */
+typedef struct hidden_name {
+    const char *kept; /* csg_file_create_kept */
+    bool *was_there;
+} hidden_name;
+
+static int open_temporary(csg_atomic_file *file, const hidden_name *hidden)
 {
     const char *folder =
         csg_arena_printf(&file->names, "%.*s", (int)folder_length(file->target), file->target);
     if (!folder)
         return ENOMEM;
     csg_temporary_sweep_once(folder);
-    int error = file->is_shared
+    const char *kept = hidden->kept ? csg_arena_printf(&file->names, "%s", hidden->kept) : NULL;
+    if (hidden->kept && !kept)
+        return ENOMEM;
+    int error = kept ? csg_temporary_open_kept(&file->temporary, kept, hidden->was_there)
+                : file->is_shared
                     ? csg_temporary_open_named(&file->temporary, &file->names, file->target)
                     : csg_temporary_open(&file->temporary, &file->names, file->target);
     file->fd = file->temporary.fd;
@@ -111,7 +121,7 @@ static void take_over(int fd, const struct stat *old)
 }
 
 static csgm_status create(csg_atomic_file *file, csgm_context *context, const char *path,
-                          bool is_shared)
+                          bool is_shared, const hidden_name *hidden)
 {
     *file = (csg_atomic_file){
         .context = context, .path = path, .fd = -1, .sync = true, .is_shared = is_shared};
@@ -130,7 +140,7 @@ static csgm_status create(csg_atomic_file *file, csgm_context *context, const ch
     file->target = follow_links(&file->names, path);
     if (!file->target)
         return fail(file, errno);
-    int error = open_temporary(file);
+    int error = open_temporary(file, hidden);
     if (error)
         return fail(file, error);
     file->is_new = !exists;
@@ -141,23 +151,32 @@ static csgm_status create(csg_atomic_file *file, csgm_context *context, const ch
 
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path)
 {
-    return create(file, context, path, false);
+    return create(file, context, path, false, &(hidden_name){0});
 }
 
 csgm_status csg_file_create_shared(csg_atomic_file *file, csgm_context *context, const char *path)
 {
-    return create(file, context, path, true);
+    return create(file, context, path, true, &(hidden_name){0});
+}
+
+csgm_status csg_file_create_kept(csg_atomic_file *file, csgm_context *context, const char *path,
+                                 const char *kept, bool *was_there)
+{
+    return create(file, context, path, true, &(hidden_name){kept, was_there});
 }
 
 csgm_status csg_file_attach(csg_atomic_file *file, csgm_context *context, const char *path,
-                            const char *name)
+                            const char *name, bool is_kept)
 {
+    bool was_there;
     *file = (csg_atomic_file){
         .context = context, .path = path, .fd = -1, .sync = true, .is_shared = true};
     csg_arena_init(&file->names, &context->memory);
     const char *own = csg_arena_printf(&file->names, "%s", name);
     file->target = own;
-    int error = own ? csg_temporary_attach(&file->temporary, own) : ENOMEM;
+    int error = !own      ? ENOMEM
+                : is_kept ? csg_temporary_open_kept(&file->temporary, own, &was_there)
+                          : csg_temporary_attach(&file->temporary, own);
     file->fd = file->temporary.fd;
     return error ? fail(file, error) : CSGM_OK;
 }

@@ -25,10 +25,14 @@ typedef struct csg_atomic_file {
 csgm_status csg_file_create(csg_atomic_file *file, csgm_context *context, const char *path);
 /* The same for one that other processes attach to by file->temporary.name. Devices are none. */
 csgm_status csg_file_create_shared(csg_atomic_file *file, csgm_context *context, const char *path);
+/* The same with the name `kept`, where the file stays when it is abandoned: *was_there, it was
+ * there already, and goes on with what it has. */
+csgm_status csg_file_create_kept(csg_atomic_file *file, csgm_context *context, const char *path,
+                                 const char *kept, bool *was_there);
 /* In those processes: to be flushed, then abandoned; the one that has created it commits it. `path`
  * is for diagnostics. */
 csgm_status csg_file_attach(csg_atomic_file *file, csgm_context *context, const char *path,
-                            const char *name);
+                            const char *name, bool is_kept);
 /* What this process has written is where others find it. Reports what fails. */
 csgm_status csg_file_flush(csg_atomic_file *file);
 /* Syncs, closes and renames; on failure the temporary is removed and an old target untouched. Where

@@ -139,11 +139,29 @@ static bool put_run(void *user, const csg_mesh_run *run)
     return s->kind->put(&s->view, run);
 }
 
+static void *what_is_seen(void *user, uint64_t *bytes)
+{
+    const csg_stream *s = user;
+    *bytes = s->view.worker_count * s->kind->worker_bytes;
+    return s->view.workers;
+}
+
+static bool flush_runs(void *user)
+{
+    csg_stream *s = user;
+    if (!s->view.options.sync || fdatasync(s->file.fd) == 0)
+        return true;
+    keep_error(s, errno);
+    return false;
+}
+
 csg_mesh_receiver csg_stream_receiver(csg_stream *stream)
 {
     return (csg_mesh_receiver){.user = stream,
                                .begin = begin_file,
                                .put = put_run,
+                               .seen = what_is_seen,
+                               .flush = flush_runs,
                                .wants_corners = stream->kind->wants_corners};
 }
 
@@ -151,6 +169,7 @@ static void release(csg_stream *s)
 {
     csg_memory *memory = &s->view.context->memory;
     uint32_t count = s->view.worker_count;
+    csg_ranks_end_keeping(s->view.context);
     for (uint32_t i = 0; s->buffers && i < count; i++)
         csg_memory_release(memory, s->buffers[i].bytes, s->buffers[i].capacity);
     csg_memory_release(memory, s->buffers, count * sizeof *s->buffers);
@@ -188,13 +207,31 @@ static csgm_status create(csgm_context *context, const char *path, csgm_format f
     return CSGM_OK;
 }
 
+/* Where the context keeps what is finished, the file is in that folder. */
+static csgm_status create_shared(csg_stream *s, csgm_context *context, const char *path)
+{
+    csg_ranks *ranks = context->ranks;
+    ranks->is_begun = false;
+    if (!ranks->folder)
+        return csg_file_create_shared(&s->file, context, path);
+    csg_arena names;
+    csg_arena_init(&names, &context->memory);
+    const char *kept = csg_arena_printf(&names, "%s/mesh", ranks->folder);
+    csgm_status status = kept
+                             ? csg_file_create_kept(&s->file, context, path, kept, &ranks->is_begun)
+                             : csg_context_no_memory(context);
+    csg_arena_reset(&names);
+    return status;
+}
+
 /* One file for all ranks: the first creates it and tells the others its hidden name. */
 static csgm_status open_shared(csg_stream *s, csgm_context *context, const char *path,
                                csgm_status own)
 {
     bool first = csg_ranks_is_first(context), is_open = false;
+    csg_ranks *ranks = context->ranks;
     if (own == CSGM_OK && first) {
-        own = csg_file_create_shared(&s->file, context, path);
+        own = create_shared(s, context, path);
         is_open = own == CSGM_OK;
     }
     const char *name = is_open ? s->file.temporary.name : "";
@@ -202,13 +239,15 @@ static csgm_status open_shared(csg_stream *s, csgm_context *context, const char 
     csgm_status status = csg_ranks_gather(context, own, CSGM_ALL_RANKS, name,
                                           is_open ? strlen(name) + 1 : 0, &names);
     if (status == CSGM_OK && !first) {
-        status = csg_file_attach(&s->file, context, path, names.bytes);
+        status = csg_file_attach(&s->file, context, path, names.bytes, ranks->folder != NULL);
         is_open = status == CSGM_OK;
     }
     csg_rank_pieces_release(&context->memory, &names);
-    status = csg_ranks_agree(context, status);
+    status = csg_ranks_follow(context, status, &ranks->is_begun);
     if (status != CSGM_OK && is_open)
         csg_file_abandon(&s->file);
+    ranks->keeps = status == CSGM_OK && ranks->folder;
+    ranks->keeps_synced = ranks->keeps && s->view.options.sync;
     return status;
 }
 

@@ -188,6 +188,21 @@ int csg_temporary_attach(csg_temporary *file, const char *name)
     return error;
 }
 
+int csg_temporary_open_kept(csg_temporary *file, const char *name, bool *was_there)
+{
+    *file = closed;
+    file->name = name;
+    file->is_kept = true;
+    *was_there = true;
+    file->fd = open(name, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (file->fd < 0 && errno == ENOENT) {
+        *was_there = false;
+        file->fd = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    }
+    file->is_named = file->fd >= 0;
+    return file->fd >= 0 ? 0 : errno;
+}
+
 /* ---- the end ---------------------------------------------------------------------- */
 
 static int link_as(csg_temporary *file, const char *name)
@@ -229,7 +244,7 @@ int csg_temporary_rename(csg_temporary *file, const char *target, bool is_new)
 
 int csg_temporary_close(csg_temporary *file)
 {
-    if (file->is_named)
+    if (file->is_named && !file->is_kept)
         unlink(file->name);
     int error = file->fd >= 0 && close(file->fd) != 0 ? errno : 0;
     pending_remove(file);

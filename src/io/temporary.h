@@ -20,6 +20,7 @@ typedef struct csg_temporary {
     int fd;           /* for reading and writing */
     int slot;         /* in the table of names that csg_io_cleanup_pending removes; -1: none */
     bool is_named;    /* the name is that of the file */
+    bool is_kept;     /* it stays there under that name until it gets another */
     const char *name; /* hidden, in the target's folder */
 } csg_temporary;
 
@@ -30,6 +31,9 @@ int csg_temporary_open_named(csg_temporary *file, csg_arena *names, const char *
 /* One that another process has opened with that hidden name, which must last as long: this one
  * writes to it, too, and an interrupt here removes it. It is never given another name from here. */
 int csg_temporary_attach(csg_temporary *file, const char *name);
+/* One with a name of the caller's, which must last as long, that stays when it is closed: a later
+ * process goes on with it. It is made where it is not there; *was_there tells. */
+int csg_temporary_open_kept(csg_temporary *file, const char *name, bool *was_there);
 /* Of a file system that writes when a descriptor is closed: such an error must not come after the
  * name. 0 or errno. */
 int csg_temporary_flush(const csg_temporary *file);

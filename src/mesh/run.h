@@ -29,6 +29,11 @@ typedef struct csg_mesh_receiver {
     csgm_status (*begin)(void *user, const csg_mesh_counts *counts);
     /* Any worker. False ends the build; the receiver remembers why. */
     bool (*put)(void *user, const csg_mesh_run *run);
+    /* For one that is to go on later with what it has: what it has seen of all runs, *bytes of it
+     * (none: 0), to be read, or to be written before the first run. NULL: it has nothing. */
+    void *(*seen)(void *user, uint64_t *bytes);
+    /* All runs until now are where they stay. False: as put. */
+    bool (*flush)(void *user);
     bool wants_corners; /* runs of loose triangles instead of vertices and indices */
 } csg_mesh_receiver;
 

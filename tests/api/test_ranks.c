@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -25,6 +26,13 @@ static const char solid_text[] = "difference() {\n"
                                  "  cube(2, center = true);\n"
                                  "  translate([1, 1, 1]) color(\"red\") sphere(r = 1.1);\n"
                                  "}\n";
+/* Where the tape is short there is surface in every cube, where it is long in few: the frontier is
+ * shared out twice. */
+static const char uneven_text[] =
+    "sphere(r = 1);\n"
+    "translate([4, 0, 0]) intersection() { sphere(r = 1.5);\n"
+    "  union(blend = 0.2) for (i = [0 : 30]) rotate([i * 20, i * 37, i * 11])\n"
+    "    translate([1.4, 0, 0]) sphere(r = 0.05); }\n";
 static const char parts_text[] =
     "part(\"a\") cube(1);\n"
     "part(\"b\") translate([2, 0, 0]) sphere(r = 0.7);\n"
@@ -49,6 +57,7 @@ typedef struct rank {
     table *table;
     uint32_t index;
     const char *text, *path;
+    const char *folder; /* csgm_context_keep; NULL: nothing is kept */
     double tolerance;
     failing memory;
     csgm_status status;
@@ -123,6 +132,8 @@ static csgm_status mesh_together(rank *r, csgm_context *context, const csgm_fiel
     long left = r->memory.left;
     r->memory.left = NEVER; /* joining is each one's own */
     if (csgm_context_join(context, &by) != CSGM_OK)
+        return CSGM_ERR_INTERNAL;
+    if (csgm_context_keep(context, r->folder) != CSGM_OK)
         return CSGM_ERR_INTERNAL;
     r->memory.left = left;
     csgm_status status;
@@ -316,7 +327,10 @@ static void test_broken_contracts(void **state)
     by.count = CSGM_RANKS_MOST + 1;
     assert_int_equal(csgm_context_join(context, &by), CSGM_ERR_ARGUMENT);
     by.count = 2;
+    assert_int_equal(csgm_context_keep(context, "kept"), CSGM_ERR_ARGUMENT); /* it is alone */
     assert_int_equal(csgm_context_join(context, &by), CSGM_OK);
+    assert_int_equal(csgm_context_keep(context, ""), CSGM_ERR_ARGUMENT);
+    assert_int_equal(csgm_context_keep(context, "kept"), CSGM_OK);
     assert_int_equal(csgm_context_join(context, NULL), CSGM_OK); /* alone again */
     assert_int_equal(csgm_context_rank_work(context, &work), CSGM_OK);
     assert_int_equal(csgm_context_rank_work(context, NULL), CSGM_ERR_ARGUMENT);
@@ -369,6 +383,153 @@ static void test_failing_exchanges(void **state)
     unlink("a.ply");
 }
 
+/* ---- jobs that go on -------------------------------------------------------------------------- */
+
+static void empty_folder(void)
+{
+    static const char *const names[] = {"kept/mesh", "kept/rank-0", "kept/rank-1", "kept/rank-2"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        unlink(names[i]);
+}
+
+static void assert_same_files(const char *one, const char *other)
+{
+    size_t lengths[2];
+    char *a = read_all(one, &lengths[0]), *b = read_all(other, &lengths[1]);
+    assert_int_equal(lengths[0], lengths[1]);
+    assert_memory_equal(a, b, lengths[0]);
+    free(a);
+    free(b);
+}
+
+static uint64_t resumed_of(const rank ranks[RANKS])
+{
+    uint64_t resumed = 0;
+    for (int i = 0; i < RANKS; i++)
+        resumed += ranks[i].work.resumed_cubes;
+    return resumed;
+}
+
+/* Stopped at each exchange in turn, then gone on with: the bytes of one process, and the later the
+ * stop, the less is made again. */
+static void test_stopped_and_resumed(void **state)
+{
+    static const struct {
+        const char *text, *extension;
+    } cases[] = {{solid_text, "ply"}, {solid_text, "glb"}, {uneven_text, "stl"}};
+    (void)state;
+    assert_int_equal(mkdir("kept", 0777), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char one[16], many[16];
+        rank ranks[RANKS];
+        uint64_t resumed = 0;
+        int stops = 0, names = 0;
+        snprintf(one, sizeof one, "one.%s", cases[i].extension);
+        snprintf(many, sizeof many, "many.%s", cases[i].extension);
+        alone(cases[i].text, one);
+        const rank like = {.text = cases[i].text, .path = many, .folder = "kept"};
+        for (;; stops++) {
+            empty_folder();
+            mesh_by_all(ranks, &like, 0, NEVER, stops);
+            if (ranks[0].status == CSGM_OK)
+                break;
+            bool is_named = access(many, F_OK) == 0; /* the last exchange tells that it is */
+            mesh_by_all(ranks, &like, 0, NEVER, -1);
+            assert_int_equal(ranks[0].status, CSGM_OK);
+            assert_true(resumed_of(ranks) >= resumed || is_named);
+            resumed = is_named ? resumed : resumed_of(ranks);
+            names += is_named;
+            assert_same_files(one, many);
+            unlink(many);
+        }
+        assert_int_equal(resumed_of(ranks), 0); /* the last was not stopped at all */
+        uint64_t cubes = 0;
+        for (int k = 0; k < RANKS; k++)
+            cubes += ranks[k].work.cubes;
+        assert_true(resumed >= cubes && stops > 10 && names <= 1);
+        unlink(one);
+        unlink(many);
+    }
+    empty_folder();
+    assert_int_equal(rmdir("kept"), 0);
+}
+
+/* What another field has left is not taken, and neither is what was damaged. */
+static void test_not_resumed(void **state)
+{
+    rank ranks[RANKS];
+    const rank like = {.text = solid_text, .path = "many.ply", .folder = "kept"};
+    const rank other = {.text = uneven_text, .path = "many.ply", .folder = "kept"};
+    (void)state;
+    assert_int_equal(mkdir("kept", 0777), 0);
+    alone(solid_text, "one.ply");
+    mesh_by_all(ranks, &other, 0, NEVER, 14);
+    assert_int_equal(ranks[0].status, CSGM_ERR_IO);
+    mesh_by_all(ranks, &like, 0, NEVER, -1);
+    assert_int_equal(ranks[0].status, CSGM_OK);
+    assert_int_equal(resumed_of(ranks), 0);
+    assert_same_files("one.ply", "many.ply");
+    unlink("many.ply");
+    empty_folder();
+    mesh_by_all(ranks, &like, 0, NEVER, 14);
+    assert_int_equal(truncate("kept/rank-1", 300), 0);
+    unlink("kept/mesh");
+    mesh_by_all(ranks, &like, 0, NEVER, -1);
+    assert_int_equal(ranks[0].status, CSGM_OK);
+    assert_int_equal(ranks[1].work.resumed_cubes, 0);
+    assert_true(ranks[0].work.resumed_cubes > 0);
+    assert_same_files("one.ply", "many.ply");
+    unlink("many.ply");
+    unlink("one.ply");
+    empty_folder();
+    assert_int_equal(rmdir("kept"), 0);
+}
+
+static void test_cannot_be_kept(void **state)
+{
+    static const char *const paths[] = {"a.obj", "a.ply"};
+    (void)state;
+    assert_int_equal(mkdir("kept", 0777), 0);
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        rank ranks[RANKS];
+        const rank like = {.text = i ? parts_text : solid_text, .path = paths[i], .folder = "kept"};
+        mesh_by_all(ranks, &like, 0, NEVER, -1);
+        assert_int_equal(ranks[0].status, CSGM_ERR_UNSUPPORTED);
+        assert_int_equal(ranks[0].errors, 1);
+        assert_int_equal(ranks[1].errors + ranks[2].errors, 0);
+    }
+    assert_int_equal(rmdir("kept"), 0);
+    rank ranks[RANKS];
+    const rank like = {.text = solid_text, .path = "a.ply", .folder = "kept"}; /* not there */
+    mesh_by_all(ranks, &like, 0, NEVER, -1);
+    assert_int_equal(ranks[0].status, CSGM_ERR_IO);
+    assert_only(NULL);
+}
+
+/* The n-th allocation of a rank fails, in a job that goes on and in one that begins. */
+static void test_failing_allocations_resumed(void **state)
+{
+    rank ranks[RANKS];
+    const rank like = {.text = solid_text, .path = "many.glb", .folder = "kept"};
+    int failures = 0;
+    (void)state;
+    assert_int_equal(mkdir("kept", 0777), 0);
+    alone(solid_text, "one.glb");
+    for (long left = 0;; left += 1 + left / 12) {
+        mesh_by_all(ranks, &like, 1, left, -1);
+        if (ranks[0].status == CSGM_OK)
+            break;
+        failures++;
+        assert_int_equal(ranks[0].status, CSGM_ERR_MEMORY);
+    }
+    assert_true(failures > 20);
+    assert_same_files("one.glb", "many.glb");
+    unlink("one.glb");
+    unlink("many.glb");
+    empty_folder();
+    assert_int_equal(rmdir("kept"), 0);
+}
+
 static int go_in(void **state)
 {
     static char folder[] = "ranks-XXXXXX";
@@ -384,9 +545,16 @@ static int come_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_broken_contracts),    cmocka_unit_test(test_same_bytes),
-        cmocka_unit_test(test_mesh_on_the_first),   cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_failing_allocations), cmocka_unit_test(test_failing_exchanges),
+        cmocka_unit_test(test_broken_contracts),
+        cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_mesh_on_the_first),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_failing_allocations),
+        cmocka_unit_test(test_failing_exchanges),
+        cmocka_unit_test(test_stopped_and_resumed),
+        cmocka_unit_test(test_not_resumed),
+        cmocka_unit_test(test_cannot_be_kept),
+        cmocka_unit_test(test_failing_allocations_resumed),
     };
     return cmocka_run_group_tests(tests, go_in, come_out);
 }

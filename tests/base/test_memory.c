@@ -123,6 +123,26 @@ static void test_reserve(void **state)
     assert_int_equal(used(&memory), 0);
 }
 
+/* By half, and by an eighth from four megabytes on. */
+static void test_reserve_grows(void **state)
+{
+    enum { MEGABYTE = 1 << 20 };
+    csg_memory memory;
+    csg_memory_init(&memory, NULL, 0);
+    void *data = NULL;
+    size_t capacity = 0;
+    assert_true(csg_memory_reserve(&memory, &data, &capacity, 1000, 8));
+    assert_int_equal(capacity, 1000);
+    assert_true(csg_memory_reserve(&memory, &data, &capacity, 1001, 8));
+    assert_int_equal(capacity, 1500);
+    assert_true(csg_memory_reserve(&memory, &data, &capacity, MEGABYTE, 8));
+    assert_true(csg_memory_reserve(&memory, &data, &capacity, MEGABYTE + 1, 8));
+    assert_int_equal(capacity, MEGABYTE + MEGABYTE / 8);
+    assert_int_equal(used(&memory), 8 * capacity);
+    csg_memory_release(&memory, data, 8 * capacity);
+    assert_int_equal(used(&memory), 0);
+}
+
 static void test_arena_room(void **state)
 {
     csg_memory memory;
@@ -210,9 +230,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_counts),      cmocka_unit_test(test_limit),
         cmocka_unit_test(test_end),         cmocka_unit_test(test_own_allocator),
-        cmocka_unit_test(test_reserve),     cmocka_unit_test(test_arena_room),
-        cmocka_unit_test(test_arena_text),  cmocka_unit_test(test_arena_marks),
-        cmocka_unit_test(test_arena_limit),
+        cmocka_unit_test(test_reserve),     cmocka_unit_test(test_reserve_grows),
+        cmocka_unit_test(test_arena_room),  cmocka_unit_test(test_arena_text),
+        cmocka_unit_test(test_arena_marks), cmocka_unit_test(test_arena_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 
 CSGMESH_MPI names the program; without it, or without mpirun, the tests are skipped. Ranks are more than there are cores.
 """
+import fcntl
 import json
 import os
 import re
@@ -135,6 +136,28 @@ class Ranks(cli.CliTest):
         for rank in stats["ranks"][:3]:
             self.assertGreater(rank["halo_cubes"], 0)
 
+    # ---- what it says of itself
+
+    def test_page(self):
+        """Its page reads well, and has the options of csgmesh mesh but for those that it refuses."""
+        page = subprocess.run([PROGRAM, "--man"], capture_output=True, text=True, check=True).stdout
+        options = re.compile(r"\\fB(\\-\\-[\w\\-]+?)\\fR")
+        written = {word.replace("\\-", "-") for word in options.findall(page)}
+        mesh = {word.replace("\\-", "-") for word in options.findall(cli.run("man", "mesh").stdout.decode())}
+        self.assertLess(written, mesh)
+        self.assertIn("--max-memory", written)
+        self.write("ball.txt", cli.BALL)
+        self.assertEqual(mesh - written, {"--cells", "--depfile", "--improve", "--lod", "--quality", "--root", "--sandbox", "--simplify", "--smooth",
+                                          "--summary", "--tolerance", "--trace", "--triangles", "--watch"} & mesh)
+        result = self.run_job((1, PROGRAM, "ball.txt", "-r", 20, "-o", "a.ply", "--lod", 3))
+        self.assert_one_message(result, "csgmesh-mpi has no --lod")
+        if shutil.which("man"):
+            self.write("page.1", page)
+            result = subprocess.run(["man", "--warnings", "-l", "page.1"], cwd=self.folder, capture_output=True, text=True,
+                                    check=False, env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"})
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("SEE ALSO", result.stdout)
+
     # ---- refusals and faults
 
     def test_refused(self):
@@ -203,6 +226,100 @@ class Ranks(cli.CliTest):
                 self.assertNotEqual(job.returncode, 0)
                 self.assertNotIn(b"csgmesh: ", said)
                 self.assert_files()
+
+    # ---- going on
+
+    def kill_when(self, condition, victim, count, *arguments):
+        """Kills a rank of a job as soon as something holds of the test's folder; whether it was still running."""
+        line = self.job((count, PROGRAM, *arguments))
+        with subprocess.Popen(line, cwd=self.folder, env=self.environment, stderr=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL) as job:
+            deadline = time.monotonic() + 60
+            while not condition() and job.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.002)
+            try:
+                os.kill(self.process_of(victim), signal.SIGKILL)
+            except (self.failureException, ProcessLookupError):
+                pass
+            job.communicate(timeout=60)
+        return job.returncode != 0
+
+    def size(self, name):
+        try:
+            return os.stat(self.path(name)).st_size
+        except FileNotFoundError:
+            return 0
+
+    def resumed(self, stats):
+        return [rank["resumed_cubes"] for rank in stats["ranks"]]
+
+    def test_killed_and_resumed(self):
+        """Killed while it counts and while it makes, then gone on with: the bytes of one process, and the folder is gone."""
+        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 4, thickness = 0.6); }")
+        self.write("uneven.txt", UNEVEN)
+        for scene, extension, cells in (("lattice.txt", "ply", 96), ("uneven.txt", "glb", 150)):
+            out, one, kept = "a." + extension, "one." + extension, f"a.{extension}.resume"
+            self.assert_status(self.run_in(scene, "-o", one, "-r", str(cells)), 0)
+            arguments = (scene, "-o", out, "-r", cells, "--max-memory", "14M", "--resume")
+            stopped = 0
+            for victim, condition in ((2, lambda: self.size(kept + "/rank-1") > 4000), (0, lambda: self.size(kept + "/mesh") > 0),
+                                      (1, lambda: self.size(kept + "/mesh") > 100000)):
+                if self.kill_when(condition, victim, 3, *arguments):
+                    stopped += 1
+                    self.assertFalse(os.path.exists(self.path(out)))
+                    self.assertTrue(os.path.exists(self.path(kept + "/head")))
+                elif os.path.exists(self.path(out)):
+                    os.unlink(self.path(out))
+            stats = json.loads(self.make(3, *arguments, "--stats").stdout)
+            self.assertTrue(self.read(out) == self.read(one), f"{scene} {extension}")
+            self.assertFalse(os.path.exists(self.path(kept)))
+            if stopped == 3: # else the last was done before it could be killed
+                self.assertGreater(sum(self.resumed(stats)), 0)
+            for name in (out, one):
+                os.unlink(self.path(name))
+
+    def test_time_limit_and_resumed(self):
+        """A job that stops itself keeps what it has, too, and may go on with other limits; without anything kept all is gone."""
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        result = self.run_job((3, PROGRAM, scene, "-r", 240, "-o", "a.ply", "--resume", "--timeout", 0.1, "--max-memory", "64M"))
+        self.assert_one_message(result, "longer than the limit of 0.1 s")
+        self.assert_files("a.ply.resume")
+        self.make(3, scene, "-r", 240, "-o", "a.ply", "--resume")
+        self.assert_status(self.run_in(scene, "-r", "240", "-o", "b.ply"), 0)
+        self.assertTrue(self.read("a.ply") == self.read("b.ply"))
+        self.assert_files("a.ply", "b.ply")
+        result = self.run_job((3, PROGRAM, scene, "-r", 40, "-o", "a.obj", "--resume"))
+        self.assert_one_message(result, "cannot be kept")
+        self.assert_files("a.ply", "b.ply")
+
+    def test_not_resumed(self):
+        self.write("a.txt", cli.BALL)
+        self.write("b.txt", "sphere(r = 1.0001);\n")
+        os.mkdir(self.path("a.ply.resume"))
+        self.write("a.ply.resume/mesh", "")
+        tail = ("-r", 20, "-o", "a.ply", "--resume")
+        # what a killed job has left: its head is of this scene
+        self.assertTrue(self.kill_when(lambda: self.size("c.ply.resume/head") > 0, 1, 2, os.path.join(STRESS, "s5-gyroid.txt"),
+                                       "-r", 600, "-o", "c.ply", "--resume"))
+        other = ("-o", "c.ply", "--resume", "-r")
+        for count, arguments, words in ((2, ("a.txt", *other, 600), "is of another scene"),
+                                        (3, (os.path.join(STRESS, "s5-gyroid.txt"), *other, 600), "another number of ranks"),
+                                        (2, (os.path.join(STRESS, "s5-gyroid.txt"), *other, 601), "other options")):
+            with self.subTest(words):
+                result = self.run_job((count, PROGRAM, *arguments))
+                self.assert_one_message(result, "cannot resume from c.ply.resume", words, "remove the folder")
+                self.assertGreater(self.size("c.ply.resume/head"), 0)
+        with open(self.path("c.ply.resume/head"), "r+", encoding="utf-8") as head:
+            fcntl.flock(head, fcntl.LOCK_EX)
+            result = self.run_job((2, PROGRAM, os.path.join(STRESS, "s5-gyroid.txt"), *other, 600))
+            self.assert_one_message(result, "another job works with it")
+            head.truncate(10)
+        result = self.run_job((2, PROGRAM, os.path.join(STRESS, "s5-gyroid.txt"), *other, 600))
+        self.assert_one_message(result, "no job of csgmesh-mpi")
+        result = self.run_job((1, PROGRAM, "a.txt", "-r", 20, "-o", "d.ply", "--resume"))
+        self.assert_one_message(result, "two ranks or more")
+        self.make(2, "a.txt", *tail) # a folder without a word in it is begun anew
+        self.assert_files("a.txt", "b.txt", "a.ply", "c.ply.resume")
 
     def process_of(self, rank):
         """The process that is this rank of the job in the test's folder."""

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "grid/octree/lattice.h"
 
+#include <float.h>
 #include <math.h>
 
 bool csg_lattice_make(csg_box bounds, csg_vec3 center, double cell_size, uint32_t resolution,
@@ -45,6 +46,12 @@ int csg_lattice_compare_morton(const uint32_t a[3], const uint32_t b[3])
         }
     }
     return a[deciding] < b[deciding] ? -1 : a[deciding] > b[deciding];
+}
+
+float csg_lattice_ball_radius(const csg_lattice *lattice, double margin, uint32_t half)
+{
+    double reach = half * lattice->cell_size + margin;
+    return (float)(reach * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
 }
 
 double csg_lattice_extent(const csg_lattice *lattice)

@@ -58,6 +58,17 @@ static inline uint64_t csg_lattice_hash(const uint32_t block[3])
  * The axis of the highest differing bit decides, the later axis among equals (Chan 2002). */
 int csg_lattice_compare_morton(const uint32_t a[3], const uint32_t b[3]);
 
+/* One of the eight cubes that a cube consists of, in cubes of its size: bit `axis` of the octant.
+ */
+static inline void csg_lattice_octant(const uint32_t parent[3], int octant, uint32_t at[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        at[axis] = 2 * parent[axis] + (uint32_t)(octant >> axis & 1);
+}
+
+/* Of the ball around a cube of 2 * half cells along an edge and a margin, rounded up. */
+float csg_lattice_ball_radius(const csg_lattice *lattice, double margin, uint32_t half);
+
 /* Largest absolute coordinate of a lattice point in the field's frame. */
 double csg_lattice_extent(const csg_lattice *lattice);
 

@@ -91,19 +91,6 @@ static bool is_in_lattice(const walk *w, const uint32_t at[3])
     return true;
 }
 
-static void octant_of(const uint32_t parent[3], int octant, uint32_t at[3])
-{
-    for (int axis = 0; axis < 3; axis++)
-        at[axis] = 2 * parent[axis] + (uint32_t)(octant >> axis & 1);
-}
-
-/* Of the ball around a cube of 2 * half cells along an edge, rounded up. */
-static float ball_radius(const csg_lattice *lattice, double margin, uint32_t half)
-{
-    double reach = half * lattice->cell_size + margin;
-    return (float)(reach * (sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON)));
-}
-
 /* By how much f can change along a lattice edge. */
 static float band_of(const csg_lattice *lattice, double margin, float lipschitz)
 {
@@ -118,11 +105,11 @@ static float octant_balls(const walk *w, const cell *parent, float c[3][CSG_OCTA
     uint32_t half = (uint32_t)(CSG_BLOCK_EDGE / 2) << w->level;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         uint32_t at[3];
-        octant_of(parent->at, octant, at);
+        csg_lattice_octant(parent->at, octant, at);
         for (int axis = 0; axis < 3; axis++)
             c[axis][octant] = csg_lattice_coordinate(w->lattice, axis, at[axis] * 2 * half + half);
     }
-    return ball_radius(w->lattice, w->options.margin, half);
+    return csg_lattice_ball_radius(w->lattice, w->options.margin, half);
 }
 
 static bool keep_cell(walk *w, worker *self, const uint32_t at[3], const csg_tape *tape)
@@ -149,7 +136,7 @@ bool csg_octree_split(csg_pruner *pruner, const csg_lattice *lattice, double mar
                 csg_lattice_coordinate(lattice, axis, at[axis] * CSG_BLOCK_EDGE + shift + half);
         }
     if (!csg_prune_octants(pruner, tape, c[0], c[1], c[2],
-                           ball_radius(lattice, margin, CSG_PART_EDGE / 2)))
+                           csg_lattice_ball_radius(lattice, margin, CSG_PART_EDGE / 2)))
         return false;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         csg_tape part = *tape;
@@ -206,7 +193,8 @@ static bool begin_scan(const walk *w, csg_scan *scan, const uint32_t at[3], cons
         c[axis] = csg_lattice_coordinate(w->lattice, axis,
                                          at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
     *scan = (csg_scan){.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
-    double radius = (double)ball_radius(w->lattice, w->options.margin, CSG_BLOCK_EDGE / 2);
+    double radius =
+        (double)csg_lattice_ball_radius(w->lattice, w->options.margin, CSG_BLOCK_EDGE / 2);
     return !csg_cone_find(NULL, tape, c, radius, &cone);
 }
 
@@ -303,7 +291,7 @@ static bool split(walk *w, worker *self, const cell *parent)
     }
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         uint32_t at[3];
-        octant_of(parent->at, octant, at);
+        csg_lattice_octant(parent->at, octant, at);
         if (is_in_lattice(w, at) && !visit_octant(w, self, &tape, octant, at, &shared))
             return false;
     }
@@ -454,16 +442,27 @@ static bool create_workers(walk *w, float rounding)
     return done;
 }
 
+/* The cells that they have made: all are joined, and what is made of the frontier is blocks. */
+static void release_cells(walk *w)
+{
+    for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
+        worker *self = &w->workers[i];
+        csg_memory_release(&w->context->memory, self->cells, self->cell_capacity * sizeof(cell));
+        self->cells = NULL;
+        self->cell_capacity = 0;
+    }
+}
+
 static void release_workers(walk *w)
 {
     csg_memory *memory = &w->context->memory;
+    release_cells(w);
     for (uint32_t i = 0; w->workers && i < w->worker_count; i++) {
         worker *self = &w->workers[i];
         csg_pruner_release(&self->pruner);
         csg_pruner_release(&self->part_pruner);
         csg_arena_reset(&self->tapes[0]);
         csg_arena_reset(&self->tapes[1]);
-        csg_memory_release(memory, self->cells, self->cell_capacity * sizeof(cell));
         csg_memory_release(memory, self->blocks, self->block_capacity * sizeof(csg_block *));
         csg_memory_release(memory, self->doubts, self->doubt_capacity * sizeof *self->doubts);
         csg_memory_release(memory, self->samples, sizeof *self->samples);
@@ -522,6 +521,7 @@ csgm_status csg_octree_create(csgm_context *context, const csgm_field *field,
     for (w->level = w->top_level - 1; done && w->level > 0; w->level--)
         done = descend(w);
     if (done) {
+        release_cells(w);
         *out = w;
         return CSGM_OK;
     }

@@ -263,9 +263,9 @@ static bool sheets_differ(const polygon *p, const apex *a)
  * critical point or on the axis of what has been dropped. */
 static csg_vec3 polygon_gradient(const csg_feature *f)
 {
-    csg_vec3 sum = {0, 0, 0}, first = csg_vec3_from_floats(f->corner[0]), last = {0, 0, 0};
+    csg_vec3 sum = {0, 0, 0}, first = csg_vec3_from_floats(f->side[0].corner), last = {0, 0, 0};
     for (int s = 1; s < f->side_count; s++) {
-        csg_vec3 way = csg_vec3_sub(csg_vec3_from_floats(f->corner[s]), first);
+        csg_vec3 way = csg_vec3_sub(csg_vec3_from_floats(f->side[s].corner), first);
         sum = csg_vec3_add(sum, csg_vec3_cross(way, last)); /* last x way looks outwards */
         last = way;
     }

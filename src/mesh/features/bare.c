@@ -73,7 +73,7 @@ static bool list_around(adding *a, const uint32_t cell[3], uint8_t edge)
 static bool list_feature(adding *a, const uint32_t cell[3], const csg_feature *f, unsigned faces)
 {
     for (int s = 0; s < f->side_count; s++)
-        if (a->m->tables->faces[f->edge[s]] & faces && !list_around(a, cell, f->edge[s]))
+        if (a->m->tables->faces[f->side[s].edge] & faces && !list_around(a, cell, f->side[s].edge))
             return false;
     return true;
 }
@@ -142,7 +142,7 @@ static int compare_places(const void *a, const void *b)
 static bool has_edge(const csg_feature *f, uint32_t edge)
 {
     for (int s = 0; s < f->side_count; s++)
-        if (f->edge[s] == edge)
+        if (f->side[s].edge == edge)
             return true;
     return false;
 }
@@ -158,19 +158,21 @@ static bool is_known(const csg_feature *features, size_t first, size_t count, ui
 }
 
 static bool make_feature(const csg_cell_tables *tables, const csg_feature_cell *found,
-                         uint16_t cell, uint32_t edge, csg_feature *f)
+                         uint16_t cell, uint32_t edge, csg_feature_whole *whole)
 {
+    csg_feature *f = &whole->feature;
     for (int loop = 0; loop < tables->loop_count[found->pattern]; loop++) {
-        *f = (csg_feature){.pattern = (uint8_t)found->pattern,
-                           .loop = (uint8_t)loop,
-                           .cell = cell,
-                           .side_count = tables->loop_sides[found->pattern][loop],
-                           .sheet_count = 1};
+        csg_feature_begin(whole,
+                          &(csg_feature){.pattern = (uint8_t)found->pattern,
+                                         .loop = (uint8_t)loop,
+                                         .cell = cell,
+                                         .side_count = tables->loop_sides[found->pattern][loop],
+                                         .sheet_count = 1});
         csg_feature_enter(f, CSG_FEATURE_BARE);
         for (int s = 0; s < f->side_count; s++) {
-            f->edge[s] = tables->loop_edge[found->pattern][loop][s];
-            f->beyond[s] = CSG_FEATURE_NONE;
-            memcpy(f->corner[s], found->at[f->edge[s]], sizeof f->corner[s]);
+            f->side[s].edge = tables->loop_edge[found->pattern][loop][s];
+            f->side[s].beyond = CSG_FEATURE_NONE;
+            memcpy(f->side[s].corner, found->at[f->side[s].edge], sizeof f->side[s].corner);
         }
         if (has_edge(f, edge)) {
             csg_feature_leave_plain(f, tables);
@@ -205,15 +207,15 @@ static bool add_place(adding *a, const place *q, const csg_feature_cell *found)
     if (block && is_known(a->store->features, block->first, block->count, cell, q->edge))
         return true;
     run *to = run_of(a, at);
-    if (!to || !csg_memory_reserve(a->store->memory, (void **)&a->features, &a->capacity,
-                                   a->count + 1, sizeof *a->features))
+    if (!to)
         return false;
-    if (!is_known(a->features, to->first, to->count, cell, q->edge) &&
-        make_feature(a->m->tables, found, cell, q->edge, &a->features[a->count])) {
-        a->count++;
-        to->count++;
-    }
-    return true;
+    csg_feature_whole fresh;
+    if (is_known(a->features, to->first, to->count, cell, q->edge) ||
+        !make_feature(a->m->tables, found, cell, q->edge, &fresh))
+        return true;
+    to->count++;
+    return csg_feature_append(&a->features, &a->count, &a->capacity, &a->store->lists,
+                              &fresh.feature);
 }
 
 /* ---- into the store ---------------------------------------------------------------------------

@@ -26,8 +26,8 @@ static void add(piece *q, uint8_t corner)
     const csg_feature *f = q->f;
     const float *at = corner == CSG_FEATURE_APEX ? f->at
                       : corner >= CSG_FEATURE_BEYOND
-                          ? q->features[f->beyond[corner - CSG_FEATURE_BEYOND]].at
-                          : f->corner[corner];
+                          ? q->features[f->side[corner - CSG_FEATURE_BEYOND].beyond].at
+                          : f->side[corner].corner;
     q->at[q->count] = csg_vec3_from_floats(at);
     q->corner[q->count++] = corner;
 }
@@ -46,9 +46,10 @@ static unsigned faces_of(const piece *q, int i)
     if (c == CSG_FEATURE_APEX)
         return 0;
     if (c < CSG_FEATURE_BEYOND)
-        return q->tables->faces[f->edge[c]];
+        return q->tables->faces[f->side[c].edge];
     int s = c - CSG_FEATURE_BEYOND;
-    return q->tables->faces[f->edge[s]] & q->tables->faces[f->edge[(s + 1) % f->side_count]];
+    return q->tables->faces[f->side[s].edge] &
+           q->tables->faces[f->side[(s + 1) % f->side_count].edge];
 }
 
 /* A diagonal in a face of the cell could be the neighbour's too (see marching/tables.c), one from
@@ -100,7 +101,7 @@ static bool cut_tip(piece *q)
 {
     bool good = true;
     for (uint8_t s = 0; s < q->f->side_count; s++) {
-        begin(q, q->f->sheet[s]);
+        begin(q, q->f->side[s].sheet);
         add(q, s);
         add(q, (uint8_t)((s + 1) % q->f->side_count));
         good = good && looks_out(q, 0, 1, 2);
@@ -114,7 +115,7 @@ static bool cut_sheet(piece *q, int s)
 {
     const csg_feature *f = q->f;
     int k = (s + 1) % f->side_count;
-    begin(q, f->sheet[k]);
+    begin(q, f->side[k].sheet);
     if (f->flipped & f->takes_next & 1u << s)
         add(q, (uint8_t)(CSG_FEATURE_BEYOND + s));
     for (add(q, (uint8_t)k); !(f->creased >> k & 1); add(q, (uint8_t)k))

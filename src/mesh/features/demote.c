@@ -20,16 +20,16 @@ void csg_feature_demote(csg_feature_store *store, const csg_cell_tables *tables,
 {
     csg_feature_shift_back(store, tables, f);
     for (int s = 0; s < f->side_count; s++) {
-        if (f->beyond[s] == CSG_FEATURE_NONE)
+        if (f->side[s].beyond == CSG_FEATURE_NONE)
             continue;
-        csg_feature *g = &store->features[f->beyond[s]];
+        csg_feature *g = &store->features[f->side[s].beyond];
         bool joined = f->flipped >> s & 1;
-        g->beyond[f->beyond_side[s]] = CSG_FEATURE_NONE;
-        g->flipped &= (uint16_t) ~(1u << f->beyond_side[s]);
+        g->side[f->side[s].beyond_side].beyond = CSG_FEATURE_NONE;
+        g->flipped &= (uint16_t) ~(1u << f->side[s].beyond_side);
         g->takes_next &= g->flipped;
         if (joined)
             csg_feature_cut(store->features, tables, g, g->triangle);
-        f->beyond[s] = CSG_FEATURE_NONE;
+        f->side[s].beyond = CSG_FEATURE_NONE;
     }
     if (f->creased & ~f->bent)
         *(is_fading(f) ? &store->fading : &store->smooth) += 1;

@@ -38,13 +38,13 @@ static void mean_normal(const csg_feature *f, float out[3])
  * to be the sheet's. */
 static const float *nearest_corner(const csg_feature *f, int sheet)
 {
-    const float *nearest = f->corner[0];
+    const float *nearest = f->side[0].corner;
     float least = INFINITY;
     for (int s = 0; s < f->side_count; s++) {
-        const float *c = f->corner[s];
+        const float *c = f->side[s].corner;
         float x = c[0] - f->at[0], y = c[1] - f->at[1], z = c[2] - f->at[2];
         float square = x * x + y * y + z * z;
-        if (f->sheet[s] == sheet && square < least) {
+        if (f->side[s].sheet == sheet && square < least) {
             least = square;
             nearest = c;
         }
@@ -223,14 +223,14 @@ static void place_moved(const csg_marching *m, const csg_block *block,
                 move->feature[k] >= features->first + features->count)
                 continue;
             const csg_feature *f = &store->features[move->feature[k]];
-            const uint8_t edge = f->edge[move->corner[k]], *o = m->tables->offset[edge];
+            const uint8_t edge = f->side[move->corner[k]].edge, *o = m->tables->offset[edge];
             const int at[3] = {(f->cell & 7) + o[0], (f->cell >> 3 & 7) + o[1],
                                (f->cell >> 6) + o[2]};
             if (at[0] == E || at[1] == E || at[2] == E) /* the block's above */
                 continue;
             uint32_t v = room->vertex[edge / 4][(at[2] * N + at[1]) * N + at[0]];
             v -= block->first_vertex;
-            csg_marching_shift(m, f->corner[move->corner[k]], out->positions + 3 * v);
+            csg_marching_shift(m, f->side[move->corner[k]].corner, out->positions + 3 * v);
             if (out->normals)
                 memcpy(out->normals + 3 * v, move->normal, sizeof move->normal);
         }

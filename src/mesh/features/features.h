@@ -44,8 +44,19 @@ typedef enum csg_feature_state {
 /* 1 - cos of 12 degrees: a crease that ends and is as blunt as this there has faded. */
 #define CSG_FEATURE_FADING 0.0219f
 
+/* What a feature has for each side of its polygon: side s leads from corner s to corner s + 1. */
+typedef struct csg_feature_side {
+    float corner[3];     /* corner s, field frame */
+    uint32_t beyond;     /* the feature beyond the side, or NONE (store.c, join.c) */
+    uint8_t beyond_side; /* which of its sides this is */
+    uint8_t edge;        /* the cell's crossed edge that corner s lies on */
+    uint8_t sheet;       /* that corner s lies on (solve.c) */
+} csg_feature_side;
+
 /* A polygon of marching cubes that a crease, a corner or a tip runs through, or that such a one
- * next door needs. */
+ * next door needs. Most have four sides and two sheets, and there are as many as vertices on
+ * creases: what it has for each of them stands in lists as long as these (lists.c). A copy of the
+ * struct shares them. */
 typedef struct csg_feature {
     /* The polygon, as find.c and bare.c have it; but for corners that make way it stays. */
     uint16_t cell;   /* (8 z + y) 8 + x */
@@ -53,42 +64,44 @@ typedef struct csg_feature {
     uint8_t joined;  /* its faces whose inside corners are joined: csg_cell_loops_of */
     uint8_t loop;    /* of the pattern, joined */
     uint8_t side_count;
-    uint8_t edge[CSG_FEATURE_MOST_SIDES];    /* the cell's crossed edges, counter-clockwise from
-                                                outside; side s leads from edge s to edge s + 1 */
-    float corner[CSG_FEATURE_MOST_SIDES][3]; /* field frame */
-
-    /* Its sheets: what lies between creases (solve.c). */
-    uint8_t sheet_count;
-    uint8_t sheet[CSG_FEATURE_MOST_SIDES]; /* that each corner lies on */
-    uint16_t creased;                      /* bit s: a crease crosses side s, or it is bent */
+    uint8_t sheet_count; /* what lies between creases (solve.c) */
+    uint8_t state;       /* csg_feature_state */
+    /* Bit s each: */
+    uint16_t creased; /* a crease crosses side s, or it is bent */
+    uint16_t flipped; /* side s is: both apexes are joined by an edge in its place (join.c) */
+    /* Of the two triangles at a flipped side each feature has one: that at the side's end, corner
+     * s + 1, otherwise that at corner s. */
+    uint16_t takes_next;
+    uint16_t bent;          /* both ends of side s are in one sheet, but an apex reaches across */
+    csg_feature_side *side; /* counter-clockwise from outside */
 
     /* The apex, and how the polygon is cut (apex.c, move.c, cut.c). */
-    csg_feature_state state;
-    uint8_t tries;                            /* to find another place */
-    float at[3];                              /* field frame */
-    float normal[CSG_FEATURE_MOST_SHEETS][3]; /* of each sheet there: unit, outward */
-    uint32_t vertex; /* its number; of the first sheet where there is one per sheet */
+    float at[3];        /* field frame */
+    uint32_t vertex;    /* its number; of the first sheet where there is one per sheet */
+    float (*normal)[3]; /* of each sheet there: unit, outward */
     /* As many as sides: of corners of the polygon, CSG_FEATURE_APEX, or CSG_FEATURE_BEYOND + s: the
      * apex beyond side s. The first that is a corner of the polygon lies in the triangle's sheet.
      */
-    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
-
-    /* Who lies beyond, and who is joined (store.c, join.c). */
-    uint32_t beyond[CSG_FEATURE_MOST_SIDES]; /* the feature beyond each side, or NONE */
-    uint8_t beyond_side[CSG_FEATURE_MOST_SIDES];
-    uint16_t flipped; /* bit s: side s is: both apexes are joined by an edge in its place */
-    /* Of the two triangles at a flipped side each feature has one: bit s: that at the side's end,
-     * corner s + 1, otherwise that at corner s. */
-    uint16_t takes_next;
-    uint16_t bent; /* bit s: both ends are in one sheet, but an apex reaches across */
+    uint8_t (*triangle)[3];
+    uint8_t tries; /* to find another place */
     bool ends;     /* a crease ends here: the polygon beyond a creased side has none */
 
     /* Vertices that have made way (shift.c). */
-    bool made_way;  /* one has for this feature */
-    uint8_t shift;  /* how much has been tried of that */
     uint16_t moved; /* bit s: corner s is not where its lattice edge has it */
+    bool made_way;  /* one has for this feature */
     uint8_t moves;  /* of its corners until now */
+    uint8_t shift;  /* how much has been tried of that */
 } csg_feature;
+
+/* A feature with lists of its own, long enough for any: where one is made, or kept as it was. */
+typedef struct csg_feature_whole {
+    csg_feature feature;
+    struct {
+        csg_feature_side side[CSG_FEATURE_MOST_SIDES];
+        float normal[CSG_FEATURE_MOST_SHEETS][3];
+        uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
+    } lists;
+} csg_feature_whole;
 
 /* A vertex that has made way for a corner of the solid (shift.h). */
 typedef struct csg_feature_moved {
@@ -110,6 +123,7 @@ typedef struct csg_feature_block {
 typedef struct csg_feature_store {
     csg_memory *memory;
     csg_feature *features;
+    csg_arena lists; /* theirs */
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
     csg_table index; /* of the blocks; no slots before it is made */
@@ -131,6 +145,23 @@ static inline bool csg_feature_is_plain(const csg_feature *feature)
 {
     return feature->state == CSG_FEATURE_BARE || feature->state == CSG_FEATURE_GIVEN_UP;
 }
+
+/* ---- lists (lists.c) ---------------------------------------------------------------------------
+ */
+
+/* The bytes of a feature's lists, a multiple of 4; and of several's. */
+size_t csg_feature_list_bytes(const csg_feature *feature);
+size_t csg_feature_lists_bytes(const csg_feature *features, size_t count);
+/* The lists of several features stand one behind the other in `lists`, from a multiple of 4 on. */
+void csg_features_lay_out(csg_feature *features, size_t count, void *lists);
+/* Begins a feature: its counts of sides and sheets are those of `begun`, its lists are zeroed. */
+void csg_feature_begin(csg_feature_whole *whole, const csg_feature *begun);
+/* Everything from one feature to another whose own lists are long enough; they stay its own. */
+void csg_feature_copy(csg_feature *to, const csg_feature *from);
+void csg_feature_keep(csg_feature_whole *to, const csg_feature *from);
+/* Adds a copy, with lists from the arena. False: out of memory. */
+bool csg_feature_append(csg_feature **features, size_t *count, size_t *capacity, csg_arena *lists,
+                        const csg_feature *feature);
 
 /* ---- finding ------------------------------------------------------------------------------- */
 
@@ -170,7 +201,8 @@ typedef struct csg_feature_room {
     float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
     float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
     uint32_t which[CSG_FEATURE_SEGMENTS];
-    csg_feature *features; /* found since the last reset */
+    csg_feature *features; /* found since it was emptied */
+    csg_arena lists;       /* theirs */
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
     uint64_t smooth, fading, evaluations;
@@ -178,6 +210,8 @@ typedef struct csg_feature_room {
 } csg_feature_room;
 
 void csg_feature_room_init(csg_feature_room *room);
+/* Forgets the features; what it has counted goes back to 0. */
+void csg_feature_room_empty(csg_feature_room *room);
 void csg_feature_room_release(csg_feature_room *room, csg_memory *memory);
 /* Adds the block's features to the room's. False: out of memory. */
 bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,
@@ -187,6 +221,14 @@ bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_
 
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count);
+/* The lists of the features from `first` on, one behind the other, *bytes of them: of csg_memory,
+ * the caller's. NULL: out of memory, or there are none. */
+void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes);
+/* Adds features that were packed so, with their blocks, as they stood behind the same others;
+ * numbered. False: out of memory. */
+bool csg_feature_store_adopt(csg_feature_store *store, const csg_feature *features, size_t count,
+                             const void *lists, size_t list_bytes, const csg_feature_block *blocks,
+                             size_t block_count);
 /* Once all blocks are there. */
 bool csg_feature_store_index(csg_feature_store *store);
 /* Who lies beyond each side; where a crease crosses it, it is to be flipped. Any thread; writes one

@@ -324,8 +324,8 @@ static bool find_in_block(csg_feature_room *room, csg_feature_probe *probe, csg_
         return true;
     find_creases(m, block, room, probe);
     size_t before = room->count;
-    return csg_feature_solve(room, probe, memory) &&
-           csg_feature_help(room, before, probe, memory) && end_block(room, memory, block, before);
+    return csg_feature_solve(room, probe) && csg_feature_help(room, before, probe) &&
+           end_block(room, memory, block, before);
 }
 
 bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
@@ -333,6 +333,7 @@ bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature
 {
     csg_feature_probe probe =
         csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
+    room->lists.memory = memory;
     bool done = find_in_block(room, &probe, memory);
     room->evaluations += probe.evaluations;
     return done;
@@ -344,8 +345,16 @@ void csg_feature_room_init(csg_feature_room *room)
     memset(&room->edges, 0, sizeof room->edges);
     memset(&room->around, 0, sizeof room->around);
     room->features = NULL;
+    csg_arena_init(&room->lists, NULL);
     room->blocks = NULL;
-    room->count = room->capacity = room->block_count = room->block_capacity = 0;
+    room->capacity = room->block_capacity = 0;
+    csg_feature_room_empty(room);
+}
+
+void csg_feature_room_empty(csg_feature_room *room)
+{
+    csg_arena_reset(&room->lists);
+    room->count = room->block_count = 0;
     room->smooth = room->fading = room->evaluations = 0;
 }
 
@@ -353,6 +362,7 @@ void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
 {
     csg_feature_around_release(&room->around);
     csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
+    csg_arena_reset(&room->lists);
     csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
     room->features = NULL;
     room->blocks = NULL;

@@ -17,15 +17,16 @@ enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE };
 static bool pokes_out(const csg_feature *f, int s)
 {
     csg_vec3 at = csg_vec3_from_floats(f->at);
-    csg_vec3 u = csg_vec3_sub(csg_vec3_from_floats(f->corner[s]), at);
-    csg_vec3 v = csg_vec3_sub(csg_vec3_from_floats(f->corner[(s + 1) % f->side_count]), at);
-    return !(csg_vec3_dot(csg_vec3_cross(u, v), csg_vec3_from_floats(f->normal[f->sheet[s]])) > 0);
+    csg_vec3 u = csg_vec3_sub(csg_vec3_from_floats(f->side[s].corner), at);
+    csg_vec3 v = csg_vec3_sub(csg_vec3_from_floats(f->side[(s + 1) % f->side_count].corner), at);
+    return !(csg_vec3_dot(csg_vec3_cross(u, v), csg_vec3_from_floats(f->normal[f->side[s].sheet])) >
+             0);
 }
 
 /* The loop of a cell of the block with a side from one edge to another: all but its apex, and which
  * side. False: there is none. */
 static bool find_loop(const csg_feature_room *room, const csg_feature_probe *probe, const int at[3],
-                      uint8_t from, uint8_t to, csg_feature *out, int *side)
+                      uint8_t from, uint8_t to, csg_feature_whole *whole, int *side)
 {
     const csg_cell_tables *tables = probe->marching->tables;
     csg_cell_rows rows = csg_cell_rows_of(probe->block, at[1], at[2]);
@@ -40,18 +41,19 @@ static bool find_loop(const csg_feature_room *room, const csg_feature_probe *pro
         if (s == count)
             continue;
         *side = s;
-        *out = (csg_feature){.cell = (uint16_t)((at[2] * E + at[1]) * E + at[0]),
-                             .pattern = (uint8_t)pattern,
-                             .loop = (uint8_t)l,
-                             .side_count = (uint8_t)count,
-                             .sheet_count = 1};
+        csg_feature_begin(whole, &(csg_feature){.cell = (uint16_t)((at[2] * E + at[1]) * E + at[0]),
+                                                .pattern = (uint8_t)pattern,
+                                                .loop = (uint8_t)l,
+                                                .side_count = (uint8_t)count,
+                                                .sheet_count = 1});
+        csg_feature *out = &whole->feature;
         for (int i = 0; i < count; i++) {
             const uint8_t *o = tables->offset[edge[i]];
             int slot = edge[i] / 4 * CSG_BLOCK_POINTS + ((at[2] + o[2]) * N + at[1] + o[1]) * N +
                        at[0] + o[0];
-            out->edge[i] = edge[i];
-            out->beyond[i] = CSG_FEATURE_NONE;
-            memcpy(out->corner[i], room->slots.at[slot], sizeof out->corner[i]);
+            out->side[i].edge = edge[i];
+            out->side[i].beyond = CSG_FEATURE_NONE;
+            memcpy(out->side[i].corner, room->slots.at[slot], sizeof out->side[i].corner);
         }
         return true;
     }
@@ -89,7 +91,8 @@ static bool place_apex(csg_feature *h, int side, csg_vec3 poking, csg_feature_pr
     csg_vec3 far = {0, 0, 0};
     int others = h->side_count - 2;
     for (int i = 0; i < others; i++)
-        far = csg_vec3_add(far, csg_vec3_from_floats(h->corner[(side + 2 + i) % h->side_count]));
+        far =
+            csg_vec3_add(far, csg_vec3_from_floats(h->side[(side + 2 + i) % h->side_count].corner));
     csg_vec3 at = csg_vec3_scale(csg_vec3_add(poking, csg_vec3_scale(far, 1.0 / others)), 0.5);
     return csg_feature_place_within(h, at, probe);
 }
@@ -104,26 +107,23 @@ static bool is_there(const csg_feature_room *room, size_t first, const csg_featu
 
 /* The polygon beyond one side of a feature. */
 static bool help_side(csg_feature_room *room, size_t first, const csg_feature *f, int s,
-                      csg_feature_probe *probe, csg_memory *memory)
+                      csg_feature_probe *probe)
 {
     const csg_cell_tables *tables = probe->marching->tables;
-    uint8_t from = f->edge[s], to = f->edge[(s + 1) % f->side_count];
+    uint8_t from = f->side[s].edge, to = f->side[(s + 1) % f->side_count].edge;
     int face = csg_face_between(tables, from, to), side;
     if (face < 0)
         return true;
     int at[3] = {f->cell & 7, f->cell >> 3 & 7, f->cell >> 6}, axis = face / 2;
     at[axis] += face % 2 ? 1 : -1;
-    csg_feature h;
+    csg_feature_whole whole;
+    csg_feature *h = &whole.feature;
     if (at[axis] < 0 || at[axis] >= E ||
         !find_loop(room, probe, at, csg_edge_beyond(tables, to, axis),
-                   csg_edge_beyond(tables, from, axis), &h, &side) ||
-        is_there(room, first, &h) || !place_apex(&h, side, csg_vec3_from_floats(f->at), probe))
+                   csg_edge_beyond(tables, from, axis), &whole, &side) ||
+        is_there(room, first, h) || !place_apex(h, side, csg_vec3_from_floats(f->at), probe))
         return true;
-    if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
-                            sizeof(csg_feature)))
-        return false;
-    room->features[room->count++] = h;
-    return true;
+    return csg_feature_append(&room->features, &room->count, &room->capacity, &room->lists, h);
 }
 
 static unsigned place_of(const csg_feature *f)
@@ -143,15 +143,13 @@ static void sort(csg_feature *features, size_t first, size_t from, size_t end)
     }
 }
 
-bool csg_feature_help(csg_feature_room *room, size_t first, csg_feature_probe *probe,
-                      csg_memory *memory)
+bool csg_feature_help(csg_feature_room *room, size_t first, csg_feature_probe *probe)
 {
     size_t end = room->count;
     for (size_t i = first; i < end; i++) {
         csg_feature f = room->features[i]; /* a copy: the array may move */
         for (int s = 0; f.state == CSG_FEATURE_FOLDED && s < f.side_count; s++)
-            if (!(f.creased >> s & 1) && pokes_out(&f, s) &&
-                !help_side(room, first, &f, s, probe, memory))
+            if (!(f.creased >> s & 1) && pokes_out(&f, s) && !help_side(room, first, &f, s, probe))
                 return false;
     }
     sort(room->features, first, end, room->count);

@@ -28,8 +28,8 @@ static bool stays_outward(const csg_feature *f, int s)
     int s1 = (s + 1) % f->side_count;
     float n[3];
     for (int i = 0; i < 3; i++)
-        n[i] = f->normal[f->sheet[s]][i] + f->normal[f->sheet[s1]][i];
-    return looks_along(f->at, f->corner[s], f->corner[s1], n);
+        n[i] = f->normal[f->side[s].sheet][i] + f->normal[f->side[s1].sheet][i];
+    return looks_along(f->at, f->side[s].corner, f->side[s1].corner, n);
 }
 
 /* Gives the feature's flipped sides the halves that the bits of `mask` say, in order. */
@@ -38,8 +38,8 @@ static void share_out(csg_feature_store *store, csg_feature *f, unsigned mask)
     for (int s = 0; s < f->side_count; s++) {
         if (!(f->flipped >> s & 1))
             continue;
-        csg_feature *g = &store->features[f->beyond[s]];
-        uint16_t own = (uint16_t)(1u << s), others = (uint16_t)(1u << f->beyond_side[s]);
+        csg_feature *g = &store->features[f->side[s].beyond];
+        uint16_t own = (uint16_t)(1u << s), others = (uint16_t)(1u << f->side[s].beyond_side);
         f->takes_next = (uint16_t)(mask & 1 ? f->takes_next | own : f->takes_next & ~own);
         g->takes_next = (uint16_t)(mask & 1 ? g->takes_next | others : g->takes_next & ~others);
         mask >>= 1;
@@ -64,8 +64,8 @@ static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables
     bool good = csg_feature_cut(store->features, tables, f, triangles);
     for (int s = 0; s < f->side_count && good; s++)
         if (f->flipped >> s & 1)
-            good = csg_feature_cuts_at(store->features, tables, &store->features[f->beyond[s]],
-                                       f->beyond_side[s]);
+            good = csg_feature_cuts_at(store->features, tables, &store->features[f->side[s].beyond],
+                                       f->side[s].beyond_side);
     return good;
 }
 
@@ -89,8 +89,8 @@ static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, 
                        int s)
 {
     static const double APART = 1e-3; /* cells: apexes nearer to each other are one place */
-    csg_feature *g = &store->features[f->beyond[s]];
-    int t = f->beyond_side[s], s1 = (s + 1) % f->side_count;
+    csg_feature *g = &store->features[f->side[s].beyond];
+    int t = f->side[s].beyond_side, s1 = (s + 1) % f->side_count;
     double square = 0;
     for (int i = 0; i < 3; i++)
         square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
@@ -98,8 +98,8 @@ static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, 
         return false;
     /* both halves of the flipped segment look the way their sheets do, as they are */
     if (!f->takes_next && !g->takes_next &&
-        looks_along(f->at, f->corner[s], g->at, f->normal[f->sheet[s]]) &&
-        looks_along(g->at, f->corner[s1], f->at, g->normal[g->sheet[t]]))
+        looks_along(f->at, f->side[s].corner, g->at, f->normal[f->side[s].sheet]) &&
+        looks_along(g->at, f->side[s1].corner, f->at, g->normal[g->side[t].sheet]))
         return true;
     return (csg_feature_cuts_at(store->features, tables, f, s) &&
             csg_feature_cuts_at(store->features, tables, g, t)) ||
@@ -111,7 +111,7 @@ static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, 
 static bool is_joined_already(const csg_feature *f, int s)
 {
     for (int k = 0; k < s; k++)
-        if (f->flipped >> k & 1 && f->beyond[k] == f->beyond[s])
+        if (f->flipped >> k & 1 && f->side[k].beyond == f->side[s].beyond)
             return true;
     return false;
 }
@@ -123,7 +123,7 @@ bool csg_feature_side_holds(csg_feature_store *store, const csg_cell_tables *tab
         return stays_outward(f, s);
     if (is_joined_already(f, s))
         return false;
-    return store->features[f->beyond[s]].state == CSG_FEATURE_UNSOLVED ||
+    return store->features[f->side[s].beyond].state == CSG_FEATURE_UNSOLVED ||
            side_flips(store, tables, f, s);
 }
 
@@ -139,10 +139,11 @@ static void set_bent(csg_feature *f, int s, bool bent)
 void csg_feature_agree(csg_feature_store *store, csg_feature *f)
 {
     for (int s = 0; s < f->side_count; s++) {
-        csg_feature *g = f->beyond[s] == CSG_FEATURE_NONE ? NULL : &store->features[f->beyond[s]];
+        csg_feature *g =
+            f->side[s].beyond == CSG_FEATURE_NONE ? NULL : &store->features[f->side[s].beyond];
         bool bent = f->bent >> s & 1;
-        if (g && bent != (g->bent >> f->beyond_side[s] & 1))
-            set_bent(g, f->beyond_side[s], bent);
+        if (g && bent != (g->bent >> f->side[s].beyond_side & 1))
+            set_bent(g, f->side[s].beyond_side, bent);
     }
     share_out(store, f, shares_of(f));
 }
@@ -151,23 +152,24 @@ void csg_feature_agree(csg_feature_store *store, csg_feature *f)
  * apex beyond to join it to. False: that does not help, nothing has changed. */
 static bool bend(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
-    csg_feature before = *f;
+    csg_feature_whole before;
+    csg_feature_keep(&before, f);
     for (int s = 0; s < f->side_count; s++) {
-        if (f->creased >> s & 1 || f->beyond[s] == CSG_FEATURE_NONE ||
-            looks_along(f->at, f->corner[s], f->corner[(s + 1) % f->side_count],
-                        f->normal[f->sheet[s]]))
+        if (f->creased >> s & 1 || f->side[s].beyond == CSG_FEATURE_NONE ||
+            looks_along(f->at, f->side[s].corner, f->side[(s + 1) % f->side_count].corner,
+                        f->normal[f->side[s].sheet]))
             continue;
-        const csg_feature *g = &store->features[f->beyond[s]];
+        const csg_feature *g = &store->features[f->side[s].beyond];
         if (g->state != CSG_FEATURE_UNSOLVED && g->state != CSG_FEATURE_BARE &&
-            !(g->creased >> f->beyond_side[s] & 1))
+            !(g->creased >> f->side[s].beyond_side & 1))
             set_bent(f, s, true);
     }
-    if (f->bent == before.bent)
+    if (f->bent == before.feature.bent)
         return false;
     csg_feature_agree(store, f);
     if (find_shares(store, tables, f))
         return true;
-    *f = before;
+    csg_feature_copy(f, &before.feature);
     csg_feature_agree(store, f);
     return false;
 }

@@ -15,7 +15,7 @@ static bool neighbours_of(const csg_feature_store *store, const csg_feature *f,
         if (f->creased >> s & 1) {
             if (!(f->flipped >> s & 1) || count == 2)
                 return false;
-            beside[count++] = &store->features[f->beyond[s]];
+            beside[count++] = &store->features[f->side[s].beyond];
         }
     return count == 2 && f->sheet_count == 2;
 }
@@ -25,9 +25,9 @@ static void restore(const csg_feature *f, csg_feature_polygon *p, csg_apex *a)
     *p = (csg_feature_polygon){
         .sides = f->side_count, .sheets = f->sheet_count, .creased = f->creased};
     for (int s = 0; s < p->sides; s++) {
-        p->edge[s] = f->edge[s];
-        p->sheet[s] = f->sheet[s];
-        p->corner[s] = csg_vec3_from_floats(f->corner[s]);
+        p->edge[s] = f->side[s].edge;
+        p->sheet[s] = f->side[s].sheet;
+        p->corner[s] = csg_vec3_from_floats(f->side[s].corner);
     }
     csg_feature_find_middles(p);
     for (int k = 0; k < p->sheets; k++)
@@ -36,7 +36,7 @@ static void restore(const csg_feature *f, csg_feature_polygon *p, csg_apex *a)
 }
 
 bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_feature_probe *probe,
-                      csg_feature *out)
+                      csg_feature_whole *out)
 {
     const csg_feature *f = &store->features[index], *beside[2];
     if (!neighbours_of(store, f, beside))
@@ -48,12 +48,13 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
     csg_feature_polygon p;
     csg_apex a = {.at = csg_vec3_scale(csg_vec3_add(low, high), 0.5)};
     restore(f, &p, &a);
-    *out = *f;
-    out->flipped = 0; /* the fan itself must look out */
-    bool found = csg_apex_find(&p, &a, probe, out) && out->state == CSG_FEATURE_SOLVED;
-    out->flipped = f->flipped;
+    csg_feature_keep(out, f);
+    csg_feature *moved = &out->feature;
+    moved->flipped = 0; /* the fan itself must look out */
+    bool found = csg_apex_find(&p, &a, probe, moved) && moved->state == CSG_FEATURE_SOLVED;
+    moved->flipped = f->flipped;
     if (f->state == CSG_FEATURE_UNSOLVED)
-        out->state = f->state; /* it is a likely place, no more */
+        moved->state = f->state; /* it is a likely place, no more */
     return found;
 }
 
@@ -73,7 +74,7 @@ static surroundings look_beside(const csg_feature_store *store, const csg_featur
     for (int s = 0; s < f->side_count; s++) {
         if (!(f->flipped & ~f->bent & 1u << s))
             continue;
-        const csg_feature *g = &store->features[f->beyond[s]];
+        const csg_feature *g = &store->features[f->side[s].beyond];
         q.beside[q.count] = g;
         q.side[q.count] = s;
         q.count += g->state != CSG_FEATURE_UNSOLVED;
@@ -85,12 +86,12 @@ static surroundings look_beside(const csg_feature_store *store, const csg_featur
 static void borrow_planes(const csg_feature *f, const surroundings *q, int k, csg_apex *a)
 {
     const csg_feature *g = q->beside[k];
-    int s = q->side[k], t = f->beyond_side[s], s1 = (s + 1) % f->side_count;
-    const float *here = g->normal[g->sheet[(t + 1) % g->side_count]];
-    const float *next = g->normal[g->sheet[t]];
-    a->planes[f->sheet[s]] =
+    int s = q->side[k], t = f->side[s].beyond_side, s1 = (s + 1) % f->side_count;
+    const float *here = g->normal[g->side[(t + 1) % g->side_count].sheet];
+    const float *next = g->normal[g->side[t].sheet];
+    a->planes[f->side[s].sheet] =
         csg_plane_at(g->at[0], g->at[1], g->at[2], 0, -here[0], -here[1], -here[2]);
-    a->planes[f->sheet[s1]] =
+    a->planes[f->side[s1].sheet] =
         csg_plane_at(g->at[0], g->at[1], g->at[2], 0, -next[0], -next[1], -next[2]);
 }
 
@@ -128,31 +129,34 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
                          csg_feature_probe *probe)
 {
     enum { MOST_TRIES = 1, MOST_NODES = 512 /* the whole tape is asked */ };
-    csg_feature *f = &store->features[index], before = *f, best;
+    csg_feature *f = &store->features[index];
+    csg_feature_whole kept, likely;
+    csg_feature *before = &kept.feature, *best = &likely.feature;
     if (!f->creased || f->tries == MOST_TRIES || probe->marching->field->tape.count > MOST_NODES)
         return false;
-    before.tries++;
-    best = before;
+    csg_feature_keep(&kept, f);
+    before->tries++;
+    csg_feature_keep(&likely, before);
     surroundings q = look_beside(store, f);
     for (int n = 0;; n++) {
         csg_feature_polygon p;
         csg_apex a = {.lost = false};
-        restore(&before, &p, &a);
-        if (!begin_try(&before, &q, &p, n, &a))
+        restore(before, &p, &a);
+        if (!begin_try(before, &q, &p, n, &a))
             break;
-        *f = before;
+        csg_feature_copy(f, before);
         f->flipped = 0;
         bool found = csg_apex_find(&p, &a, probe, f);
-        f->flipped = before.flipped;
+        f->flipped = before->flipped;
         csg_feature_agree(store, f);
         if (found && csg_feature_holds(store, tables, f))
             return true;
-        if (found && before.state == CSG_FEATURE_UNSOLVED && n == 0) {
-            best = *f;
-            best.state = before.state;
+        if (found && before->state == CSG_FEATURE_UNSOLVED && n == 0) {
+            csg_feature_copy(best, f);
+            best->state = before->state;
         }
     }
-    *f = best;
+    csg_feature_copy(f, best);
     csg_feature_agree(store, f);
     return false;
 }

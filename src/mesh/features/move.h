@@ -9,7 +9,7 @@
 /* Where feature `index` lies on a crease and not between its neighbours: *out is the same between
  * them. False: it stays. Writes nothing of the store. */
 bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_feature_probe *probe,
-                      csg_feature *out);
+                      csg_feature_whole *out);
 
 /* Looks for a place where the feature holds (join.h), from what its neighbours know. False:
  * there is none, nothing has changed, but that an apex that was not found goes to a likely place.

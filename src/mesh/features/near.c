@@ -120,9 +120,9 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
         if (corners[c].apex)
             continue;
         int k = 0;
-        while (f->edge[k] != corners[c].edge)
+        while (f->side[k].edge != corners[c].edge)
             k++;
-        csg_marching_shift(m, f->corner[k], t->shape.at[c]);
+        csg_marching_shift(m, f->side[k].corner, t->shape.at[c]);
         t->shape.vertex[c] = number_of_edge(v, cell, corners[c].edge);
         moved = moved || corners[c].at;
         in_face = in_face || is_in_face(m->tables, corners[c].edge, cell, beside);

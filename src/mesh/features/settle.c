@@ -32,9 +32,9 @@ static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, 
     if (csg_feature_replace(store, tables, index, probe))
         return true;
     for (int s = 0; s < f->side_count; s++) {
-        csg_feature *g = f->flipped >> s & 1 ? &store->features[f->beyond[s]] : NULL;
+        csg_feature *g = f->flipped >> s & 1 ? &store->features[f->side[s].beyond] : NULL;
         if (g && g->state != CSG_FEATURE_UNSOLVED && !csg_feature_holds(store, tables, g))
-            csg_feature_shift(store, tables, f->beyond[s], CSG_FEATURE_NONE, probe);
+            csg_feature_shift(store, tables, f->side[s].beyond, CSG_FEATURE_NONE, probe);
     }
     f->tries = 0;
     return csg_feature_replace(store, tables, index, probe);
@@ -60,7 +60,7 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
         for (int s = 0; s < f->side_count; s++) {
             if (!(f->creased >> s & 1) || csg_feature_side_holds(store, tables, f, s))
                 continue;
-            uint32_t other = f->flipped >> s & 1 ? f->beyond[s] : CSG_FEATURE_NONE;
+            uint32_t other = f->flipped >> s & 1 ? f->side[s].beyond : CSG_FEATURE_NONE;
             changed++;
             if (!csg_feature_replace(store, tables, i, probe) &&
                 (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&

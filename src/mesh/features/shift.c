@@ -27,10 +27,10 @@ static bool find_ring(csg_feature_store *store, csg_feature *f, int corner, ring
         r->f[k] = f;
         r->corner[k] = corner;
         if (f->state == CSG_FEATURE_GIVEN_UP || f->moved >> corner & 1 ||
-            f->beyond[corner] == CSG_FEATURE_NONE)
+            f->side[corner].beyond == CSG_FEATURE_NONE)
             return false;
-        int side = f->beyond_side[corner];
-        f = &store->features[f->beyond[corner]];
+        int side = f->side[corner].beyond_side;
+        f = &store->features[f->side[corner].beyond];
         corner = (side + 1) % f->side_count;
     }
     return f == r->f[0] && corner == r->corner[0];
@@ -39,7 +39,7 @@ static bool find_ring(csg_feature_store *store, csg_feature *f, int corner, ring
 static void place_vertex(const ring *r, const float at[3])
 {
     for (int k = 0; k < AROUND; k++)
-        memcpy(r->f[k]->corner[r->corner[k]], at, 3 * sizeof *at);
+        memcpy(r->f[k]->side[r->corner[k]].corner, at, 3 * sizeof *at);
 }
 
 /* Places to try around one vertex or apex. */
@@ -113,7 +113,7 @@ static bool looks_out(const csg_feature *f, int corner, csg_vec3 n, double cell)
             continue;
         csg_vec3 at[3], u, v;
         for (int i = 0; i < 3; i++)
-            at[i] = csg_vec3_from_floats(f->corner[c[i]]);
+            at[i] = csg_vec3_from_floats(f->side[c[i]].corner);
         u = csg_vec3_sub(at[1], at[0]);
         v = csg_vec3_sub(at[2], at[0]);
         if (!(csg_vec3_dot(csg_vec3_cross(u, v), n) > FLAT * cell * cell))
@@ -186,12 +186,12 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
     ring r;
     if (!find_ring(store, f, corner, &r))
         return false;
-    csg_feature before[AROUND];
+    csg_feature_whole before[AROUND];
     float from[3], to[3];
     for (int k = 0; k < AROUND; k++)
-        before[k] = *r.f[k];
-    memcpy(from, f->corner[corner], sizeof from);
-    csg_vec3 n = csg_vec3_from_floats(f->normal[f->sheet[corner]]);
+        csg_feature_keep(&before[k], r.f[k]);
+    memcpy(from, f->side[corner].corner, sizeof from);
+    csg_vec3 n = csg_vec3_from_floats(f->normal[f->side[corner].sheet]);
     places p;
     for (int i = 0; i < WAYS; i++)
         p.at[i] = place_of(around * WAYS + i, csg_vec3_from_floats(from),
@@ -208,7 +208,7 @@ static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables
             probe->around->out_of_memory = true; /* ends the run: another mesh would come out */
         }
         for (int k = 0; k < AROUND; k++) {
-            *r.f[k] = before[k];
+            csg_feature_copy(r.f[k], &before[k].feature);
             csg_feature_agree(store, r.f[k]);
         }
     }
@@ -243,7 +243,7 @@ static void put_back(csg_feature_store *store, const csg_cell_tables *tables, cs
 {
     for (int k = 0; k < AROUND; k++) {
         csg_feature *f = &store->features[m->feature[k]];
-        memcpy(f->corner[m->corner[k]], m->from, sizeof m->from);
+        memcpy(f->side[m->corner[k]].corner, m->from, sizeof m->from);
         f->moved &= (uint16_t) ~(1u << m->corner[k]);
         f->moves++;
         if (f->state == CSG_FEATURE_GIVEN_UP)

@@ -11,15 +11,17 @@ static unsigned plain_triangles(const csg_feature *f, const csg_cell_tables *tab
                                 uint8_t corner[CSG_CELL_EDGES][3])
 {
     const uint8_t *edge = tables->edge[f->pattern];
-    uint8_t own[3 * CSG_CELL_EDGES];
+    uint8_t around[CSG_FEATURE_MOST_SIDES], own[3 * CSG_CELL_EDGES];
     unsigned count = f->side_count - 2u;
-    if (f->joined && csg_cell_cut(f->edge, f->side_count, own))
+    for (int s = 0; s < f->side_count; s++)
+        around[s] = f->side[s].edge;
+    if (f->joined && csg_cell_cut(around, f->side_count, own))
         edge = own;
     for (int loop = 0; loop < f->loop && !f->joined; loop++)
         edge += 3 * (tables->loop_sides[f->pattern][loop] - 2);
     for (unsigned i = 0; i < 3 * count; i++) {
         uint8_t k = 0;
-        while (f->edge[k] != edge[i])
+        while (f->side[k].edge != edge[i])
             k++;
         corner[i / 3][i % 3] = k;
     }
@@ -34,7 +36,7 @@ static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_EDGES][
     for (unsigned t = 0; t < count; t++) {
         csg_vec3 at[3];
         for (int i = 0; i < 3; i++)
-            at[i] = csg_vec3_from_floats(f->corner[corner[t][i]]);
+            at[i] = csg_vec3_from_floats(f->side[corner[t][i]].corner);
         csg_vec3 n = csg_vec3_cross(csg_vec3_sub(at[1], at[0]), csg_vec3_sub(at[2], at[0]));
         double area = csg_vec3_dot(n, n);
         if (area > most) {
@@ -49,7 +51,7 @@ static unsigned largest_of(const csg_feature *f, uint8_t corner[CSG_CELL_EDGES][
 static void level_normals(csg_feature *f, uint8_t corner)
 {
     for (int k = 0; k < f->sheet_count; k++)
-        memmove(f->normal[k], f->normal[f->sheet[corner]], sizeof f->normal[k]);
+        memmove(f->normal[k], f->normal[f->side[corner].sheet], sizeof f->normal[k]);
 }
 
 /* Whereabouts in a triangle: nearly at a corner, which lies on the surface; where floats are too
@@ -74,10 +76,10 @@ static bool fan_within(csg_feature *f, unsigned attempt)
     for (int i = 0; i < 3; i++) {
         float sum = 0;
         for (int s = 0; s < f->side_count; s++)
-            sum += f->corner[s][i];
+            sum += f->side[s].corner[i];
         f->at[i] = sum / (float)f->side_count;
         if (attempt)
-            f->at[i] = 0.5f * (f->at[i] + f->corner[attempt - 1][i]);
+            f->at[i] = 0.5f * (f->at[i] + f->side[attempt - 1].corner[i]);
     }
     level_normals(f, 0);
     return true;
@@ -101,8 +103,8 @@ bool csg_feature_divide(csg_feature *f, const csg_cell_tables *tables, unsigned 
     for (int c = 0; c < 3; c++, to++)
         (*to)[0] = CSG_FEATURE_APEX, (*to)[1] = d[c], (*to)[2] = d[(c + 1) % 3];
     for (int i = 0; i < 3; i++)
-        f->at[i] =
-            w[0] * f->corner[d[0]][i] + w[1] * f->corner[d[1]][i] + w[2] * f->corner[d[2]][i];
+        f->at[i] = w[0] * f->side[d[0]].corner[i] + w[1] * f->side[d[1]].corner[i] +
+                   w[2] * f->side[d[2]].corner[i];
     level_normals(f, d[w[1] > w[0] ? 1 : w[2] > w[0] ? 2 : 0]);
     return true;
 }

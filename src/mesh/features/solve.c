@@ -22,8 +22,8 @@ typedef struct candidate {
     const csg_found_loop *loop;
     polygon p;
     apex apexes[CSG_FEATURE_MOST_STARTS]; /* one for each start */
-    csg_feature feature;
-    float sharpest;                /* of its creases: 1 - cos */
+    csg_feature_whole whole;              /* what is known of the feature */
+    float sharpest;                       /* of its creases: 1 - cos */
     bool good, crossed, is_looked; /* not too many sheets; it has creases; an apex is looked for */
     bool found;                    /* it has one */
 } candidate;
@@ -94,20 +94,21 @@ static void first_planes(const csg_feature_room *room, const csg_found_loop *loo
 
 /* All but the apex. */
 static void record(const csg_feature_room *room, const csg_found_loop *loop, const polygon *p,
-                   csg_feature *out)
+                   csg_feature_whole *whole)
 {
-    *out = (csg_feature){.cell = loop->cell,
-                         .pattern = loop->pattern,
-                         .joined = loop->joined,
-                         .loop = loop->loop,
-                         .side_count = (uint8_t)p->sides,
-                         .sheet_count = (uint8_t)p->sheets,
-                         .creased = p->creased};
+    csg_feature *out = &whole->feature;
+    csg_feature_begin(whole, &(csg_feature){.cell = loop->cell,
+                                            .pattern = loop->pattern,
+                                            .joined = loop->joined,
+                                            .loop = loop->loop,
+                                            .side_count = (uint8_t)p->sides,
+                                            .sheet_count = (uint8_t)p->sheets,
+                                            .creased = p->creased});
     for (int s = 0; s < p->sides; s++) {
-        memcpy(out->corner[s], room->slots.at[loop->slot[s]], sizeof out->corner[s]);
-        out->edge[s] = p->edge[s];
-        out->sheet[s] = p->sheet[s];
-        out->beyond[s] = CSG_FEATURE_NONE;
+        memcpy(out->side[s].corner, room->slots.at[loop->slot[s]], sizeof out->side[s].corner);
+        out->side[s].edge = p->edge[s];
+        out->side[s].sheet = p->sheet[s];
+        out->side[s].beyond = CSG_FEATURE_NONE;
     }
 }
 
@@ -129,7 +130,7 @@ static void begin_candidate(const csg_feature_room *room, const csg_found_loop *
         return;
     csg_feature_find_middles(&c->p);
     choose_starts(room, loop, &c->p);
-    record(room, loop, &c->p, &c->feature);
+    record(room, loop, &c->p, &c->whole);
     for (int k = 0; k < c->p.start_count; k++) {
         apex *a = &c->apexes[k];
         memset(a, 0, sizeof *a);
@@ -160,7 +161,7 @@ static void try_first(candidate *candidates, int count, csg_feature_probe *probe
     csg_apexes_ask(walks, n, probe, f);
     for (int i = 0; i < n; i++) {
         candidate *c = owner[i];
-        c->found = csg_apexes_choose(&c->p, c->apexes, &f[i], 1, m, &c->feature);
+        c->found = csg_apexes_choose(&c->p, c->apexes, &f[i], 1, m, &c->whole.feature);
     }
 }
 
@@ -175,7 +176,7 @@ static void try_others(candidate *c, csg_feature_probe *probe)
         walks[k] = (csg_apex_walk){&c->p, &c->apexes[k], false};
     csg_apexes_improve(walks + 1, count - 1, m->lattice->cell_size, probe);
     csg_apexes_ask(walks, count, probe, f);
-    c->found = csg_apexes_choose(&c->p, c->apexes, f, count, m, &c->feature);
+    c->found = csg_apexes_choose(&c->p, c->apexes, f, count, m, &c->whole.feature);
 }
 
 /* An apex to be found from those of its neighbours. */
@@ -191,16 +192,17 @@ static void leave_unsolved(const csg_feature_room *room, const csg_found_loop *l
 /* In a cell with a joined face every loop is a feature: without a crease, with an apex within its
  * sheet, or at least a smooth one. */
 static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loop,
-                         csg_feature_probe *probe, csg_feature *out)
+                         csg_feature_probe *probe, csg_feature_whole *whole)
 {
+    csg_feature *out = &whole->feature;
     polygon p = {.sides = loop->side_count, .sheets = 1};
     const float *g = room->gradient[loop->slot[0]];
     memcpy(p.edge, loop->edge, sizeof p.edge);
-    record(room, loop, &p, out);
+    record(room, loop, &p, whole);
     csg_apex a = {.planes = {csg_plane_at(0, 0, 0, 0, g[0], g[1], g[2])}};
     csg_apex_place(&p, &a, out);
     for (int s = 0; s < p.sides; s++)
-        p.corner[s] = csg_vec3_from_floats(out->corner[s]);
+        p.corner[s] = csg_vec3_from_floats(out->side[s].corner);
     csg_feature_find_middles(&p);
     if (csg_feature_place_within(out, p.middle, probe))
         return;
@@ -208,18 +210,12 @@ static void leave_smooth(const csg_feature_room *room, const csg_found_loop *loo
     csg_feature_divide(out, probe->marching->tables, 0);
 }
 
-static bool end_candidate(csg_feature_room *room, const candidate *c, csg_feature_probe *probe,
-                          csg_memory *memory)
+static bool end_candidate(csg_feature_room *room, candidate *c, csg_feature_probe *probe)
 {
     const csg_found_loop *loop = c->loop;
+    csg_feature *out = &c->whole.feature;
     if (!c->crossed && (!c->good || !loop->wide) && !loop->joined)
         return true;
-    if (!csg_memory_reserve(memory, (void **)&room->features, &room->capacity, room->count + 1,
-                            sizeof(csg_feature)))
-        return false;
-    csg_feature *out = &room->features[room->count];
-    if (c->is_looked)
-        *out = c->feature;
     /* nobody beyond could help a tip: it is for the polygon there to reach */
     bool solved = c->found && (c->p.creased || out->state == CSG_FEATURE_SOLVED);
     /* where all creases are blunt, one that enters the polygon and is not found where it should
@@ -230,16 +226,15 @@ static bool end_candidate(csg_feature_room *room, const candidate *c, csg_featur
         leave_unsolved(room, loop, &c->p, out);
     bool is_feature = solved || (c->good && creased);
     if (!is_feature && loop->joined)
-        leave_smooth(room, loop, probe, out);
-    if (is_feature || loop->joined)
-        room->count++;
+        leave_smooth(room, loop, probe, &c->whole);
     if (!is_feature && c->crossed && !c->found)
         *(fades ? &room->fading : &room->smooth) += 1;
-    return true;
+    return !(is_feature || loop->joined) ||
+           csg_feature_append(&room->features, &room->count, &room->capacity, &room->lists, out);
 }
 
 static bool solve_some(csg_feature_room *room, const csg_found_loop *loops, int count,
-                       csg_feature_probe *probe, csg_memory *memory)
+                       csg_feature_probe *probe)
 {
     candidate candidates[AT_ONCE];
     for (int i = 0; i < count; i++)
@@ -247,21 +242,21 @@ static bool solve_some(csg_feature_room *room, const csg_found_loop *loops, int 
     try_first(candidates, count, probe);
     for (int i = 0; i < count; i++) {
         candidate *c = &candidates[i];
-        bool is_settled = c->found && c->feature.state == CSG_FEATURE_SOLVED;
+        bool is_settled = c->found && c->whole.feature.state == CSG_FEATURE_SOLVED;
         if (c->is_looked && c->p.start_count > 1 && !is_settled)
             try_others(c, probe);
-        if (!end_candidate(room, c, probe, memory))
+        if (!end_candidate(room, c, probe))
             return false;
     }
     return true;
 }
 
-bool csg_feature_solve(csg_feature_room *room, csg_feature_probe *probe, csg_memory *memory)
+bool csg_feature_solve(csg_feature_room *room, csg_feature_probe *probe)
 {
     for (uint32_t i = 0; i < room->loop_count; i += AT_ONCE) {
         uint32_t left = room->loop_count - i;
         int count = (int)(left < AT_ONCE ? left : AT_ONCE);
-        if (!solve_some(room, &room->loops[i], count, probe, memory))
+        if (!solve_some(room, &room->loops[i], count, probe))
             return false;
     }
     return true;

@@ -7,6 +7,6 @@
 #include "mesh/features/probe.h"
 
 /* Adds the features of the room's loops, none where no apex holds good. False: out of memory. */
-bool csg_feature_solve(csg_feature_room *room, csg_feature_probe *probe, csg_memory *memory);
+bool csg_feature_solve(csg_feature_room *room, csg_feature_probe *probe);
 
 #endif

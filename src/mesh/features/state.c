@@ -29,5 +29,5 @@ bool csg_feature_may_enter(csg_feature_state from, csg_feature_state to)
 void csg_feature_enter(csg_feature *f, csg_feature_state state)
 {
     assert(csg_feature_may_enter(f->state, state));
-    f->state = state;
+    f->state = (uint8_t)state;
 }

@@ -10,6 +10,29 @@
 
 enum { E = CSG_BLOCK_EDGE };
 
+/* Room for so many more of both. */
+static bool reserve(csg_feature_store *store, size_t features, size_t blocks)
+{
+    return csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
+                              store->block_count + blocks, sizeof(csg_feature_block)) &&
+           csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
+                              store->count + features, sizeof(csg_feature));
+}
+
+/* Behind those of the store; their lists in one piece. False: out of memory. */
+static bool copy_features(csg_feature_store *store, const csg_feature *from, size_t count)
+{
+    store->lists.memory = store->memory;
+    uint8_t *lists = csg_arena_alloc(&store->lists, csg_feature_lists_bytes(from, count));
+    for (size_t i = 0; lists && i < count; i++) {
+        csg_feature *to = &store->features[store->count + i];
+        to->side = (void *)lists;
+        csg_feature_copy(to, &from[i]);
+        lists += csg_feature_list_bytes(to);
+    }
+    return lists != NULL;
+}
+
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count)
 {
@@ -18,18 +41,48 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
     const csg_feature_block *blocks = room->blocks + first;
     size_t from = blocks[0].first;
     size_t features = blocks[count - 1].first + blocks[count - 1].count - from;
-    if (!csg_memory_reserve(store->memory, (void **)&store->blocks, &store->block_capacity,
-                            store->block_count + count, sizeof(csg_feature_block)) ||
-        !csg_memory_reserve(store->memory, (void **)&store->features, &store->capacity,
-                            store->count + features, sizeof(csg_feature)))
+    if (!reserve(store, features, count))
         return false;
-    memcpy(store->features + store->count, room->features + from, features * sizeof(csg_feature));
+    if (!copy_features(store, room->features + from, features))
+        return false;
     for (size_t i = 0; i < count; i++) {
         csg_feature_block entry = blocks[i];
         entry.first = (uint32_t)(store->count + entry.first - from);
         store->blocks[store->block_count++] = entry;
     }
     store->count += features;
+    return true;
+}
+
+void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes)
+{
+    *bytes = csg_feature_lists_bytes(store->features + first, store->count - first);
+    uint8_t *packed = *bytes ? csg_memory_alloc(store->memory, *bytes) : NULL, *to = packed;
+    for (size_t i = first; packed && i < store->count; i++) {
+        size_t own = csg_feature_list_bytes(&store->features[i]);
+        memcpy(to, store->features[i].side, own);
+        to += own;
+    }
+    return packed;
+}
+
+bool csg_feature_store_adopt(csg_feature_store *store, const csg_feature *features, size_t count,
+                             const void *lists, size_t list_bytes, const csg_feature_block *blocks,
+                             size_t block_count)
+{
+    if (!count)
+        return true;
+    store->lists.memory = store->memory;
+    void *own = csg_arena_alloc(&store->lists, list_bytes);
+    if (!own || !reserve(store, count, block_count))
+        return false;
+    memcpy(own, lists, list_bytes);
+    memcpy(store->features + store->count, features, count * sizeof *features);
+    memcpy(store->blocks + store->block_count, blocks, block_count * sizeof *blocks);
+    csg_features_lay_out(store->features + store->count, count, own);
+    store->count += count;
+    store->block_count += block_count;
+    store->numbered = store->block_count;
     return true;
 }
 
@@ -62,6 +115,7 @@ void csg_feature_store_release(csg_feature_store *store)
     if (!store->memory)
         return;
     csg_memory_release(store->memory, store->features, store->capacity * sizeof(csg_feature));
+    csg_arena_reset(&store->lists);
     csg_memory_release(store->memory, store->blocks,
                        store->block_capacity * sizeof(csg_feature_block));
     csg_table_release(&store->index);
@@ -92,7 +146,7 @@ static uint32_t feature_with(const csg_feature_store *store, const csg_feature_b
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         const csg_feature *f = &store->features[i];
         for (uint8_t s = 0; f->cell == cell && s < f->side_count; s++)
-            if (f->edge[s] == from && f->edge[(s + 1) % f->side_count] == to) {
+            if (f->side[s].edge == from && f->side[(s + 1) % f->side_count].edge == to) {
                 *side = s;
                 return i;
             }
@@ -103,7 +157,7 @@ static uint32_t feature_with(const csg_feature_store *store, const csg_feature_b
 static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
                       const csg_feature_block *block, csg_feature *f, int s)
 {
-    uint8_t from = f->edge[s], to = f->edge[(s + 1) % f->side_count], side = 0;
+    uint8_t from = f->side[s].edge, to = f->side[(s + 1) % f->side_count].edge, side = 0;
     int face = csg_face_between(tables, from, to);
     uint32_t at[3] = {block->at[0], block->at[1], block->at[2]};
     uint16_t cell = f->cell;
@@ -117,8 +171,8 @@ static void link_side(csg_feature_store *store, const csg_cell_tables *tables,
     if (other == CSG_FEATURE_NONE || f->state == CSG_FEATURE_GIVEN_UP ||
         store->features[other].state == CSG_FEATURE_GIVEN_UP) /* in a cell with a joined face */
         return;
-    f->beyond[s] = other;
-    f->beyond_side[s] = side;
+    f->side[s].beyond = other;
+    f->side[s].beyond_side = side;
     if (f->creased >> s & store->features[other].creased >> side & 1)
         f->flipped |= (uint16_t)(1u << s);
 }
@@ -151,9 +205,9 @@ void csg_feature_flip(csg_feature_store *store, const csg_cell_tables *tables, s
 static uint8_t sheet_beyond(const csg_feature_store *store, const csg_feature *f, int s,
                             uint8_t sheet)
 {
-    const csg_feature *g = &store->features[f->beyond[s]];
-    int t = f->beyond_side[s];
-    return g->sheet[f->sheet[s] == sheet ? (t + 1) % g->side_count : t];
+    const csg_feature *g = &store->features[f->side[s].beyond];
+    int t = f->side[s].beyond_side;
+    return g->side[f->side[s].sheet == sheet ? (t + 1) % g->side_count : t].sheet;
 }
 
 void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, int index,
@@ -163,16 +217,16 @@ void csg_feature_triangle(const csg_feature_store *store, const csg_feature *f, 
     int c = 0;
     while (t[c] >= CSG_FEATURE_BEYOND)
         c++;
-    uint8_t sheet = f->sheet[t[c]];
+    uint8_t sheet = f->side[t[c]].sheet;
     for (c = 0; c < 3; c++) {
         int s = t[c] - CSG_FEATURE_BEYOND;
         if (t[c] == CSG_FEATURE_APEX)
             corners[c] = (csg_fan_corner){.apex = f, .sheet = sheet};
         else if (s >= 0)
-            corners[c] = (csg_fan_corner){.apex = &store->features[f->beyond[s]],
+            corners[c] = (csg_fan_corner){.apex = &store->features[f->side[s].beyond],
                                           .sheet = sheet_beyond(store, f, s, sheet)};
         else
-            corners[c] = (csg_fan_corner){.edge = f->edge[t[c]],
-                                          .at = f->moved >> t[c] & 1 ? f->corner[t[c]] : NULL};
+            corners[c] = (csg_fan_corner){.edge = f->side[t[c]].edge,
+                                          .at = f->moved >> t[c] & 1 ? f->side[t[c]].corner : NULL};
     }
 }

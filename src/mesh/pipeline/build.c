@@ -155,6 +155,8 @@ static csgm_status build_mesh(build *b, csgm_context *context, const csgm_mesh_o
         survey_stages(b);
     if (status == CSGM_OK) {
         status = csg_mesh_begin_output(out, &b->slabs);
+        if (status == CSGM_OK)
+            status = csg_mesh_ranks_resume(out, &b->slabs);
         if (status == CSGM_OK && out->counts.vertex_count)
             status = csg_mesh_make_slabs(out, &b->slabs);
         status = csg_mesh_ranks_join(out, &b->slabs, status);

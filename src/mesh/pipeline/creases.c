@@ -45,8 +45,7 @@ static void empty_rooms(csg_mesh_creases *c)
         c->store.smooth += room->smooth;
         c->store.fading += room->fading;
         c->workers->each[i].point_evaluations += room->evaluations;
-        room->count = room->block_count = 0;
-        room->smooth = room->fading = room->evaluations = 0;
+        csg_feature_room_empty(room);
     }
 }
 
@@ -199,12 +198,12 @@ static bool order_features(csg_mesh_creases *c, csg_feature_probe *probe)
     for (int round = 0; round < ROUNDS && moved; round++) {
         moved = 0;
         for (uint32_t i = 0; i < store->count; i++) {
-            csg_feature fresh;
+            csg_feature_whole fresh;
             if (i % FEATURES_PER_QUESTION == 0 && csg_mesh_should_stop(c->watch))
                 return false;
             if (!csg_feature_move(store, i, probe, &fresh))
                 continue;
-            store->features[i] = fresh;
+            csg_feature_copy(&store->features[i], &fresh.feature);
             moved++;
         }
     }

@@ -198,7 +198,7 @@ csgm_status csg_mesh_make_slabs(csg_mesh_output *o, csg_mesh_slabs *slabs)
 {
     CSG_ZONE(o->watch->context, "marching");
     csgm_status status = CSGM_OK;
-    for (size_t i = slabs->count; i-- > 0 && status == CSGM_OK;) {
+    for (size_t i = slabs->to_make; i-- > 0 && status == CSGM_OK;) {
         status = csg_mesh_take_slab(slabs, i);
         if (status != CSGM_OK)
             break;
@@ -208,7 +208,9 @@ csgm_status csg_mesh_make_slabs(csg_mesh_output *o, csg_mesh_slabs *slabs)
         if (!csg_pool_run(o->watch->context->pool, csg_mesh_item_count(&o->blocks), make_item,
                           poll_progress, o))
             return csg_mesh_why_stopped(o->watch);
-        status = csg_mesh_leave_slab(slabs, i);
+        status = slabs->keeper ? slabs->keeper->made(o, slabs, i) : CSGM_OK;
+        if (status == CSGM_OK)
+            status = csg_mesh_leave_slab(slabs, i);
     }
     return status;
 }

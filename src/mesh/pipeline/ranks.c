@@ -10,6 +10,7 @@
 #include "base/pool.h"
 #include "base/ranks.h"
 #include "base/trace.h"
+#include "mesh/pipeline/keep.h"
 
 /* ---- sharing ------------------------------------------------------------------------------------
  */
@@ -104,7 +105,7 @@ typedef struct common {
     uint32_t blocks[3], features;
 } common;
 
-/* Another scene, or another build, would make another mesh. */
+/* Another scene, or another build, would make another mesh, and so would what one has kept. */
 static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
 {
     csgm_context *context = s->watch->context;
@@ -130,7 +131,7 @@ static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
         other++;
     csg_rank_pieces_release(&context->memory, &all);
     if (other == context->ranks->by.count)
-        return CSGM_OK;
+        return csg_ranks_agree(context, csg_mesh_keep_begin(s, &own, sizeof own));
     if (csg_ranks_is_first(context))
         csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
                        "all need the same scene, options and build of csgmesh",
@@ -202,43 +203,60 @@ static bool is_unfair(const csg_mesh_slabs *s)
            5 * most > 8 * (s->vertex_count / ranks->by.count + 1);
 }
 
+/* Everybody's features with their lists: those of the store go, and come back to `all`. */
+static csgm_status gather_lists(csgm_context *context, const csg_feature_store *store,
+                                csgm_status own, csg_feature_store *all)
+{
+    size_t bytes = 0, total;
+    void *packed = own == CSGM_OK ? csg_feature_store_pack(store, 0, &bytes) : NULL, *lists = NULL;
+    if (bytes && !packed)
+        own = csg_context_no_memory(context);
+    csg_rank_pieces features;
+    csgm_status status = csg_ranks_gather(context, own, CSGM_ALL_RANKS, store->features,
+                                          store->count * sizeof(csg_feature), &features);
+    if (status == CSGM_OK) {
+        all->features = features.bytes;
+        all->count = all->capacity = (size_t)(features.total / sizeof(csg_feature));
+        total = csg_feature_lists_bytes(all->features, all->count);
+        lists = csg_arena_alloc(&all->lists, total);
+        own = lists ? CSGM_OK : csg_context_no_memory(context);
+        status = csg_ranks_gather_into(context, own, CSGM_ALL_RANKS, packed, bytes, lists);
+    }
+    csg_memory_release(&context->memory, packed, bytes);
+    if (status == CSGM_OK)
+        csg_features_lay_out(all->features, all->count, lists);
+    return status;
+}
+
 /* Everybody's features in one store, as one process has them. The piece of each rank has them in
  * the order of its blocks, and ranks are in the order of the frontier. */
 static csgm_status gather_features(csg_mesh_slabs *s, csgm_status own)
 {
     csgm_context *context = s->watch->context;
     csg_feature_store *store = &s->creases->store;
-    csg_rank_pieces features, blocks = {0};
-    uint64_t seen[2] = {store->smooth, store->fading};
+    csg_rank_pieces blocks;
+    csg_feature_store all = {.memory = &context->memory,
+                             .lists = {.memory = &context->memory},
+                             .cell_size = store->cell_size,
+                             .smooth = store->smooth,
+                             .fading = store->fading};
     for (size_t i = 0; own == CSGM_OK && i < store->count; i++)
         store->features[i].vertex += (uint32_t)s->before[s->first_cell].vertices;
-    csgm_status status = csg_ranks_gather(context, own, CSGM_ALL_RANKS, store->features,
-                                          store->count * sizeof(csg_feature), &features);
-    if (status != CSGM_OK)
-        return status;
-    status = csg_ranks_gather(context, CSGM_OK, CSGM_ALL_RANKS, store->blocks,
-                              store->block_count * sizeof(csg_feature_block), &blocks);
+    csgm_status status = gather_lists(context, store, own, &all);
+    if (status == CSGM_OK)
+        status = csg_ranks_gather(context, CSGM_OK, CSGM_ALL_RANKS, store->blocks,
+                                  store->block_count * sizeof(csg_feature_block), &blocks);
     if (status != CSGM_OK) {
-        csg_rank_pieces_release(&context->memory, &features);
+        csg_feature_store_release(&all);
         return status;
     }
-    double cell_size = store->cell_size;
     csg_feature_store_release(store);
-    size_t count = (size_t)(features.total / sizeof(csg_feature));
-    size_t block_count = (size_t)(blocks.total / sizeof(csg_feature_block));
-    *store = (csg_feature_store){.memory = &context->memory,
-                                 .features = features.bytes,
-                                 .blocks = blocks.bytes,
-                                 .count = count,
-                                 .capacity = count,
-                                 .block_count = block_count,
-                                 .block_capacity = block_count,
-                                 .cell_size = cell_size,
-                                 .numbered = block_count,
-                                 .smooth = seen[0],
-                                 .fading = seen[1]};
+    all.blocks = blocks.bytes;
+    all.block_count = all.block_capacity = all.numbered =
+        (size_t)(blocks.total / sizeof(csg_feature_block));
+    *store = all;
     uint32_t first = 0;
-    for (size_t i = 0; i < block_count; i++) {
+    for (size_t i = 0; i < store->block_count; i++) {
         store->blocks[i].first = first;
         first += store->blocks[i].count;
     }
@@ -278,6 +296,21 @@ static void number_halo(csg_mesh_slabs *s)
         block->first_vertex = (uint32_t)(s->before[s->halo_cells[cell]].vertices + vertex);
         vertex += block->vertex_count;
     }
+}
+
+csgm_status csg_mesh_ranks_resume(csg_mesh_output *o, csg_mesh_slabs *s)
+{
+    size_t end = s->end_cell, left = csg_mesh_keep_skip_made(o, s);
+    if (left == end)
+        return CSGM_OK;
+    s->end_cell = left;
+    s->is_at_hand = false;
+    csgm_status status =
+        find_halo(s) ? csg_mesh_sample_halo(s) : csg_context_no_memory(s->watch->context);
+    s->end_cell = end;
+    if (status == CSGM_OK)
+        number_halo(s);
+    return status;
 }
 
 static csgm_status share_again(csg_mesh_slabs *s)

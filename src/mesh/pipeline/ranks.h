@@ -17,6 +17,9 @@ csgm_status csg_mesh_ranks_share(csg_mesh_slabs *slabs, csgm_status own);
  * halos; the totals are those of the whole mesh. Where one rank would have too much to make, the
  * frontier is shared out again by what was counted. */
 csgm_status csg_mesh_ranks_number(csg_mesh_slabs *slabs, csgm_status own);
+/* Once the output has begun: what of this rank's stretch an earlier job has made is left out, and
+ * the halo is that of the rest. */
+csgm_status csg_mesh_ranks_resume(csg_mesh_output *output, csg_mesh_slabs *slabs);
 /* After all is made, or `own` has ended it: the box of all clipped vertices, and, where the mesh is
  * not for a receiver, the whole mesh on the first rank and an empty one on the others. */
 csgm_status csg_mesh_ranks_join(csg_mesh_output *output, csg_mesh_slabs *slabs, csgm_status own);

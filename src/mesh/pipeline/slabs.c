@@ -26,8 +26,10 @@ csgm_status csg_mesh_walk_octree(csg_mesh_slabs *s, const csg_mesh_input *in)
 /* Frontier cells whose blocks may be in memory at once: as many as half of the memory left can
  * hold, a sixth where creases need the most of it, and not more than take a gigabyte at the very
  * worst (in practice a third of it). */
-static size_t cells_per_slab(const csg_memory *memory, bool sharp)
+size_t csg_mesh_cells_per_slab(const csg_mesh_slabs *s)
 {
+    const csg_memory *memory = &s->watch->context->memory;
+    bool sharp = s->creases->sharp;
     enum { BYTES_PER_CELL = 8 * 600, LEAST_CELLS = 16 }; /* eight blocks with tapes and index */
     uint64_t bytes = (uint64_t)1 << 30;
     if (memory->limit_bytes) {
@@ -43,13 +45,14 @@ static size_t cells_per_slab(const csg_memory *memory, bool sharp)
 csgm_status csg_mesh_divide_slabs(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    size_t cells = s->end_cell - s->first_cell,
-           per_slab = cells_per_slab(memory, s->creases->sharp);
+    size_t cells = s->end_cell - s->first_cell;
+    size_t per_slab = s->cells_per_slab ? s->cells_per_slab : csg_mesh_cells_per_slab(s);
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     s->count = cells ? (cells + per_slab - 1) / per_slab : 1;
     s->slabs = csg_memory_alloc(memory, s->count * sizeof(csg_slab));
+    s->to_make = s->count;
     if (!s->slabs) {
-        s->count = 0;
+        s->count = s->to_make = 0;
         return csg_context_no_memory(s->watch->context);
     }
     for (size_t i = 0; i < s->count; i++) {
@@ -130,12 +133,18 @@ csgm_status csg_mesh_count_slabs(csg_mesh_slabs *s)
         csg_slab *slab = &s->slabs[i];
         slab->vertices = s->vertex_count;
         slab->triangles = s->triangle_count;
+        slab->first_block = s->creases->store.block_count;
         begin_part(s, CSGM_STAGE_OCTREE, i);
+        s->is_at_hand = !(s->keeper && s->keeper->load(s, i, &status)) && status == CSGM_OK;
+        if (!s->is_at_hand)
+            continue;
         status = sample_slab(s, slab, &s->vertex_count, &s->triangle_count);
         if (status == CSGM_OK && s->counts)
             note_counts(s, slab);
+        if (status == CSGM_OK && s->keeper)
+            status = s->keeper->counted(s, i);
     }
-    s->is_at_hand = status == CSGM_OK;
+    s->is_at_hand = s->is_at_hand && status == CSGM_OK;
     if (s->octree)
         csg_octree_end_scan(s->octree);
     return status;
@@ -174,23 +183,29 @@ static bool is_needed_below(const csg_mesh_slabs *s, const csg_block *block)
     return false;
 }
 
-static bool keep(csg_mesh_slabs *s, csg_halo *to, const csg_block *block)
+/* Adds a copy of the block. False: out of memory. */
+static bool keep(csg_halo *halo, const csg_block *block)
 {
-    csg_block *copy = csg_arena_alloc(&to->arena, sizeof *copy);
-    if (!copy || !csg_memory_reserve(&s->watch->context->memory, (void **)&to->blocks,
-                                     &to->capacity, to->count + 1, sizeof copy))
-        return false;
-    *copy = *block;
-    to->blocks[to->count++] = copy;
+    if (halo->count == halo->with_spare) {
+        csg_block *fresh = csg_arena_alloc(&halo->arena, sizeof *fresh);
+        if (!fresh || !csg_memory_reserve(halo->arena.memory, (void **)&halo->blocks,
+                                          &halo->capacity, halo->with_spare + 1, sizeof fresh))
+            return false;
+        halo->blocks[halo->with_spare++] = fresh;
+    }
+    *halo->blocks[halo->count++] = *block;
     return true;
 }
 
-static bool keep_needed(csg_mesh_slabs *s, csg_halo *to, csg_block *const *blocks, size_t count)
+static void drop_unneeded(const csg_mesh_slabs *s, csg_halo *halo)
 {
-    for (size_t i = 0; i < count; i++)
-        if (is_needed_below(s, blocks[i]) && !keep(s, to, blocks[i]))
-            return false;
-    return true;
+    for (size_t i = halo->count; i-- > 0;) {
+        csg_block *block = halo->blocks[i];
+        if (is_needed_below(s, block))
+            continue;
+        halo->blocks[i] = halo->blocks[--halo->count];
+        halo->blocks[halo->count] = block;
+    }
 }
 
 csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
@@ -204,12 +219,11 @@ csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
     csg_halo *halo = &s->halo;
     size_t count;
     csg_block *const *blocks = csg_octree_blocks(s->octree, &count);
-    if (halo->arena.memory)
-        csg_arena_reset(&halo->arena);
-    csg_arena_init(&halo->arena, memory);
-    halo->count = 0;
+    halo->arena.memory = memory;
+    csg_arena_reset(&halo->arena);
+    halo->count = halo->with_spare = 0;
     for (size_t i = 0; i < count; i++)
-        if (!keep(s, halo, blocks[i]))
+        if (!keep(halo, blocks[i]))
             return csg_context_no_memory(s->watch->context);
     return CSGM_OK;
 }
@@ -217,16 +231,12 @@ csgm_status csg_mesh_sample_halo(csg_mesh_slabs *s)
 /* After a slab is made: its lower rim, and what is still needed of the halo before. */
 static csgm_status renew_halo(csg_mesh_slabs *s)
 {
-    csg_halo fresh = s->old_halo;
-    s->old_halo = s->halo;
-    fresh.count = 0;
-    csg_arena_init(&fresh.arena, &s->watch->context->memory);
-    bool done = keep_needed(s, &fresh, s->old_halo.blocks, s->old_halo.count) &&
-                keep_needed(s, &fresh, s->at_hand.block, s->at_hand.count);
-    if (s->old_halo.arena.memory)
-        csg_arena_reset(&s->old_halo.arena);
-    s->halo = fresh;
-    return done ? CSGM_OK : csg_context_no_memory(s->watch->context);
+    s->halo.arena.memory = &s->watch->context->memory;
+    drop_unneeded(s, &s->halo);
+    for (size_t i = 0; i < s->at_hand.count; i++)
+        if (is_needed_below(s, s->at_hand.block[i]) && !keep(&s->halo, s->at_hand.block[i]))
+            return csg_context_no_memory(s->watch->context);
+    return CSGM_OK;
 }
 
 /* The index over the blocks at hand and the halo. */
@@ -269,18 +279,11 @@ csgm_status csg_mesh_leave_slab(csg_mesh_slabs *s, size_t i)
     return i > 0 ? renew_halo(s) : CSGM_OK;
 }
 
-static void release_halo(csg_memory *memory, csg_halo *halo)
-{
-    if (halo->arena.memory)
-        csg_arena_reset(&halo->arena);
-    csg_memory_release(memory, halo->blocks, halo->capacity * sizeof(csg_block *));
-}
-
 void csg_mesh_slabs_release(csg_mesh_slabs *s)
 {
     csg_memory *memory = &s->watch->context->memory;
-    release_halo(memory, &s->halo);
-    release_halo(memory, &s->old_halo);
+    csg_arena_reset(&s->halo.arena);
+    csg_memory_release(memory, s->halo.blocks, s->halo.capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->reachable, s->reachable_capacity * sizeof(csg_block *));
     csg_memory_release(memory, s->slabs, s->count * sizeof(csg_slab));
     csg_table_release(&s->index);

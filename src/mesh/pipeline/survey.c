@@ -136,7 +136,7 @@ static csg_vec3 place_of(const csg_feature *feature)
         return csg_vec3_from_floats(feature->at);
     csg_vec3 sum = {0, 0, 0};
     for (unsigned i = 0; i < feature->side_count; i++)
-        sum = csg_vec3_add(sum, csg_vec3_from_floats(feature->corner[i]));
+        sum = csg_vec3_add(sum, csg_vec3_from_floats(feature->side[i].corner));
     return csg_vec3_scale(sum, 1.0 / feature->side_count);
 }
 

@@ -11,8 +11,8 @@
 #include "scene/formula/step.h"
 #include "scene/primitives/cone_ball.h"
 #include "scene/primitives/leaf.h"
-#include "scene/primitives/smooth.h"
 #include "scene/primitives/sizes.h"
+#include "scene/primitives/smooth.h"
 #include "scene/reference.h"
 
 enum {
@@ -85,8 +85,8 @@ typedef struct csg_primitive {
     /* Adds the gradients in the ball (cone_ball.h). False: no bound. NULL for curves
      * (field/gradients/cone_curve.h). */
     bool (*gradients)(csg_cone_leaf *leaf);
-    /* The field in a ball where one formula of it holds (smooth.h). False: none does all over it, or
-     * it has no third derivatives to speak of. NULL for curves. */
+    /* The field in a ball where one formula of it holds (smooth.h). False: none does all over it,
+     * or it has no third derivatives to speak of. NULL for curves. */
     bool (*smooth)(const csg_smooth_leaf *leaf, csg_smooth *out);
     /* Whether a crease of the field may be within `reach` of q where its values are in the band. A
      * centre or an axis counts too. */

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "scene/formula/terms.h"
-#include "scene/primitives/smooth.h"
 #include "scene/primitives/point.h"
 #include "scene/primitives/primitive.h"
+#include "scene/primitives/smooth.h"
 
 static inline double csg_sign(double x)
 {

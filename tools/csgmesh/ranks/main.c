@@ -17,7 +17,10 @@
 #include "mesh/drawings.h"
 #include "mesh/outputs.h"
 #include "mesh/statistics.h"
+#include "ranks/hash.h"
+#include "ranks/manual.h"
 #include "ranks/ranks.h"
+#include "ranks/resume.h"
 
 /* What a rank holds back until it is known whether it has to say it. */
 typedef struct held {
@@ -30,25 +33,13 @@ typedef struct held {
 
 static int refuse_options(cli_app *app)
 {
-    static const struct {
-        int option;
-        const char *name;
-    } refused[] = {{CLI_OPTION_watch, "--watch"},    {CLI_OPTION_lod, "--lod"},
-                   {CLI_OPTION_cells, "--cells"},    {CLI_OPTION_depfile, "--depfile"},
-                   {CLI_OPTION_trace, "--trace"},    {CLI_OPTION_smooth, "--smooth"},
-                   {CLI_OPTION_roots, "--root"},     {CLI_OPTION_sandbox, "--sandbox"},
-                   {CLI_OPTION_summary, "--summary"}};
     const cli_options *o = app->options;
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-        if (o->given[refused[i].option])
-            return cli_usage_error(app, "csgmesh has it", "csgmesh-mpi has no %s", refused[i].name);
+    int status = cli_ranks_refuse_options(app);
+    if (status != CLI_DONE)
+        return status;
     if (!o->resolution && !o->given[CLI_OPTION_cell_size])
         return cli_usage_error(app, "as -r 2048; csgmesh makes the others",
                                "csgmesh-mpi makes meshes of equal cells: give -r or -s");
-    if (o->given[CLI_OPTION_tolerance] || o->given[CLI_OPTION_simplify] || o->improve)
-        return cli_usage_error(app, "csgmesh does that, in one process",
-                               "csgmesh-mpi changes none of the triangles that equal cells give: "
-                               "-e, --simplify and --improve are not for it");
     if (o->outputs.count != 1 || strcmp(o->outputs.items[0], "-") == 0)
         return cli_usage_error(app, "as -o lattice.ply",
                                "csgmesh-mpi writes one file: give one -o");
@@ -90,18 +81,20 @@ static int compare_builds(cli_app *app)
 
 static void add_text(void *user, const char *text, size_t length)
 {
-    uint64_t *hash = user; /* FNV-1a */
-    for (size_t i = 0; i < length; i++)
-        *hash = (*hash ^ (unsigned char)text[i]) * 1099511628211u;
+    uint64_t *hash = user;
+    *hash = cli_hash_add(*hash, text, length);
 }
 
 /* The scene as it was read, and the options that meshes depend on: files can differ where ranks run
  * on several machines. */
-static int compare_scenes(cli_app *app, const cli_work *work, int argc, char **argv)
+static int compare_scenes(cli_app *app, const cli_work *work, const cli_resume *resume, int argc,
+                          char **argv, uint64_t *scene)
 {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = CLI_HASH_BEGIN;
     csgm_status status =
         csgm_scene_dump(app->context, work->scene, CSGM_DUMP_SCENE, add_text, &hash);
+    *scene = hash;
+    add_text(&hash, resume->is_asked ? "resume" : "", resume->is_asked ? 6 : 0);
     for (int i = 1; i < argc; i++)
         add_text(&hash, argv[i], strlen(argv[i]) + 1);
     if (cli_ranks_most(cli_exit_status(status)) != CLI_DONE)
@@ -146,6 +139,7 @@ static void put_share(cli_json *json, const share *of)
     cli_json_count(json, "vertices", of->work.vertices);
     cli_json_count(json, "triangles", of->work.triangles);
     cli_json_count(json, "received_bytes", of->work.received_bytes);
+    cli_json_count(json, "resumed_cubes", of->work.resumed_cubes);
     cli_json_number(json, "processor_s", of->processor_s);
     cli_json_count(json, "peak_rss_bytes", of->peak_rss_bytes);
     cli_json_count(json, "threads", of->threads);
@@ -219,9 +213,10 @@ static int make_file(cli_app *app, cli_work *work, cli_report *report)
     return status;
 }
 
-static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
+static int mesh_scene(cli_app *app, held *kept, cli_resume *resume, int argc, char **argv)
 {
     cli_work work = {0};
+    uint64_t scene = 0;
     cli_report report = {0};
     csgm_communicator by = cli_ranks_communicator();
     app->flat = cli_drawings_flat(app->options);
@@ -230,11 +225,14 @@ static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
     if (status == CLI_DONE && kept->text) /* warnings of reading are rank 0's to say */
         rewind(app->console.out);
     if (status == CLI_DONE)
-        status = compare_scenes(app, &work, argc, argv);
+        status = compare_scenes(app, &work, resume, argc, argv, &scene);
     if (status == CLI_DONE)
         status = cli_ranks_most(cli_exit_status(csgm_context_join(app->context, &by)));
     if (status == CLI_DONE)
+        status = cli_resume_begin(resume, app, scene);
+    if (status == CLI_DONE)
         status = make_file(app, &work, &report);
+    cli_resume_end(resume, status == CLI_DONE);
     if (status == CLI_DONE)
         cli_certify_tell(app, &work.stats.certify);
     if (status == CLI_DONE && app->options->stats)
@@ -246,6 +244,8 @@ static int mesh_scene(cli_app *app, held *kept, int argc, char **argv)
 static int mesh_as_asked(cli_app *app, held *kept, int argc, char **argv)
 {
     cli_problem problem;
+    cli_resume resume = cli_resume_make();
+    cli_resume_take(&resume, &argc, argv);
     bool parsed = cli_options_parse(app->options, CLI_MESH, argc - 1, argv + 1, &problem);
     FILE *out = app->console.out;
     cli_console_configure(&app->console, app->options);
@@ -264,7 +264,7 @@ static int mesh_as_asked(cli_app *app, held *kept, int argc, char **argv)
     if (status == CLI_DONE)
         status = cli_app_open(app);
     status = cli_ranks_most(status);
-    return status == CLI_DONE ? mesh_scene(app, kept, argc, argv) : status;
+    return status == CLI_DONE ? mesh_scene(app, kept, &resume, argc, argv) : status;
 }
 
 /* --version and --help need no other rank. */
@@ -279,17 +279,9 @@ static bool is_asked_for(int argc, char **argv, const char *name, const char *le
 static void tell_about(int argc, char **argv)
 {
     if (is_asked_for(argc, argv, "--version", "-V"))
-        printf("csgmesh-mpi %s\n%s\nwith %s\n", csgm_version(), csgm_build_features(),
-               cli_ranks_library());
+        cli_ranks_tell_version(cli_ranks_library());
     else
-        printf(
-            "usage: mpirun -n RANKS csgmesh-mpi SCENE -r CELLS -o FILE [options]\n\n"
-            "Makes one mesh of equal cells with many processes; the file has the bytes that\n"
-            "csgmesh SCENE -r CELLS -o FILE writes. PLY, STL and GLB of one part are written by\n"
-            "all ranks. Options are those of csgmesh mesh (csgmesh mesh --help) but for what\n"
-            "changes triangles (-e, --quality, --triangles, --simplify, --improve), drawings,\n"
-            "--lod, --cells, --depfile, --trace, --watch and --root. A rank has one thread unless\n"
-            "-j says otherwise. --stats has the share of each rank.\n");
+        cli_ranks_tell_help();
 }
 
 int main(int argc, char **argv)
@@ -297,6 +289,10 @@ int main(int argc, char **argv)
     cli_options options = {.command = CLI_MESH};
     cli_app app = {.options = &options, .start_s = cli_now_s(), .console = cli_console_make()};
     held kept = {0};
+    if (argc == 2 && strcmp(argv[1], "--man") == 0) { /* also where MPI cannot be started */
+        cli_ranks_tell_page();
+        return fflush(stdout) == 0 ? CLI_DONE : CLI_TROUBLE;
+    }
     if (!cli_ranks_begin(&argc, &argv))
         return CLI_TROUBLE;
     cli_interrupt_install();
