@@ -191,9 +191,9 @@ static double conclude(rounds *r, const csg_rounds_counts *counts)
 /* ---- how they go on ----------------------------------------------------------------------------
  */
 
-/* What the latest rounds have shown: what is left open falls with the share's power `falls`, between
- * that of planes where the surface is smooth, 1/2, and that of better models, 3/5, or slower where
- * less is known of it; at first it is taken for the least of these that is usual. */
+/* What the latest rounds have shown: what is left open falls with the share's power `falls`,
+ * between that of planes where the surface is smooth, 1/2, and that of better models, 3/5, or
+ * slower where less is known of it; at first it is taken for the least of these that is usual. */
 typedef struct course {
     double share, open, falls; /* of the round before; open: 0, there is none */
 } course;
@@ -207,7 +207,8 @@ static void take_course(course *c, double share, double open)
     c->open = open;
 }
 
-/* The next share. Cubes become more by its power of 2/3 at most. False: so many are not to be had. */
+/* The next share. Cubes become more by its power of 2/3 at most. False: so many are not to be had.
+ */
 static bool choose_share(rounds *r, const course *c, double ratio, uint64_t latest, uint64_t left)
 {
     static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-12, MARGIN = 0.65;
