@@ -18,7 +18,9 @@ csg_taylor csg_taylor_sum(const csg_taylor *a, double factor, const csg_taylor *
 {
     csg_taylor out = {.value = a->value + factor * b->value,
                       .error = a->error + fabs(factor) * b->error,
-                      .cubic = a->cubic + fabs(factor) * b->cubic};
+                      .cubic = a->cubic + fabs(factor) * b->cubic,
+                      .turned = a->turned + fabs(factor) * b->turned,
+                      .twice = a->twice + fabs(factor) * b->twice};
     for (int k = 0; k < 3; k++)
         out.slope[k] = a->slope[k] + factor * b->slope[k];
     for (int n = 0; n < SECOND; n++)
@@ -57,6 +59,16 @@ double csg_taylor_reach(const csg_taylor *a, double r)
            (1 + 1e-12);
 }
 
+/* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
+double csg_taylor_stray(const csg_taylor *a, double r)
+{
+    const double *b = a->bend;
+    double rows[3] = {fabs(b[XX]) + fabs(b[XY]) + fabs(b[XZ]), fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
+                      fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
+    double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
+    return ((norm + a->twice * r) * r + a->turned) * (1 + 1e-12);
+}
+
 /* ---- functions of functions --------------------------------------------------------------------
  */
 
@@ -82,7 +94,11 @@ csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, do
         c.square += square_of_bend(u[i]->bend);
         c.cubic += u[i]->cubic * u[i]->cubic;
         c.error += u[i]->error * u[i]->error;
+        c.turned += u[i]->turned * u[i]->turned;
+        c.twice += u[i]->twice * u[i]->twice;
     }
+    c.turned = sqrt(c.turned);
+    c.twice = sqrt(c.twice);
     c.square = sqrt(c.square);
     c.cubic = sqrt(c.cubic);
     c.error = sqrt(c.error);
@@ -115,6 +131,25 @@ static void find_remainder(const csg_taylor_outer *o, const csg_taylor *const *u
     out->error *= 1 + 1e-12;
 }
 
+/* The gradient is (slope + bend d + at most 3 sixth |d|^2) . (S + w), |w| <= square |x| + twice
+ * |x|^2 + turned; what is off from slope . (S + the bends' x) + S^T bend S x, power by power as
+ * above. */
+static void find_turn(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
+                      const csg_taylor_change *c, double r, csg_taylor *out)
+{
+    double bent = 0.5 * c->square + c->cubic * r, whole = c->linear + bent * r, e = c->error;
+    double w = c->square + c->twice * r, third = 3 * o->sixth * (c->linear + w * r + c->turned);
+    for (int i = 0; i < count; i++) {
+        out->twice += fabs(o->slope[i]) * u[i]->twice;
+        out->turned += fabs(o->slope[i]) * u[i]->turned;
+    }
+    out->twice += o->norm * (bent * c->linear + whole * w) + third * whole * whole;
+    out->turned += o->norm * (e * c->linear + whole * r * c->turned + e * (w * r + c->turned)) +
+                   third * (2 * whole * r + e) * e;
+    out->twice *= 1 + 1e-12;
+    out->turned *= 1 + 1e-12;
+}
+
 csg_taylor csg_taylor_compose(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
                               const csg_taylor_change *change, double r)
 {
@@ -134,6 +169,7 @@ csg_taylor csg_taylor_compose(const csg_taylor_outer *o, const csg_taylor *const
         }
     }
     find_remainder(o, u, count, change, r, &out);
+    find_turn(o, u, count, change, r, &out);
     return out;
 }
 

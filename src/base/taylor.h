@@ -10,11 +10,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* |f(x) - (value + slope . x + x . bend x / 2)| <= error + cubic |x|^3. */
+/* |f(x) - (value + slope . x + x . bend x / 2)| <= error + cubic |x|^3, and its gradient is within
+ * turned + twice |x|^2 of slope + bend x. */
 typedef struct csg_taylor {
     double value, slope[3];
     double bend[6]; /* xx, yy, zz, xy, xz, yz */
     double error, cubic;
+    double turned, twice;
 } csg_taylor;
 
 enum { CSG_TAYLOR_MOST = 4 /* functions that become one */ };
@@ -45,10 +47,15 @@ static inline double csg_taylor_most(const csg_taylor *a, double radius)
     return a->value + csg_taylor_reach(a, radius);
 }
 
+/* How far gradients in the ball may be from the one at its centre. */
+double csg_taylor_stray(const csg_taylor *a, double radius);
+
 /* The norms of the vector of the functions' changes and of its parts, by which an outer function
- * is off: |u(x) - u(0)| <= linear |x| + square |x|^2 / 2 + cubic |x|^3 + error. */
+ * is off: |u(x) - u(0)| <= linear |x| + square |x|^2 / 2 + cubic |x|^3 + error, and so of its
+ * gradients. */
 typedef struct csg_taylor_change {
     double linear, square, cubic, error, most; /* most: in the ball */
+    double turned, twice;
 } csg_taylor_change;
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double radius);
 

@@ -200,32 +200,51 @@ static void take_group(const csg_halves *halves, double half, const csg_section_
     add_up_to(a, fmin(most_of(g, half), seen.most > 0 ? seen.most / g->cosine : 0));
 }
 
-/* How much of the cube's faces is in the solid. Where the field is smooth that is known closer than
- * by planes. */
-static void find_faces(const csg_measure_cube *q, const csg_halves *halves, bool is_one, account *a)
+/* How much of the cube's faces is in the solid. f: the field's model, or NULL; it knows that closer
+ * than planes do. */
+static void find_faces(double half, const csg_halves *halves, const csg_taylor *f, account *a)
 {
-    csg_taylor f;
-    double half = q->half, whole = face_of(half), area, error;
-    bool is_smooth = is_one && csg_tape_taylor(&q->tape, q->c, csg_enclosure_radius(half), &f);
+    double whole = face_of(half), area, error;
     for (int i = 0; i < FACES; i++) {
         int axis = i / 2, side = i & 1 ? 1 : -1;
-        if (is_smooth && csg_graph_face(&f, half, axis, side, &area, &error))
+        if (f && csg_graph_face(f, half, axis, side, &area, &error))
             a->faces[i] = (csg_section){fmax(area - error, 0), fmin(area + error, whole)};
         else
             a->faces[i] = csg_section_of_face(halves, half, axis, side);
     }
 }
 
+/* The planes around a smooth field, whose gradients are known all over the cube. False: they turn
+ * too far to be of use. */
+static bool enclose_smooth(const csg_measure_cube *q, csg_taylor *f, csg_halves *halves)
+{
+    static const double MOST = 0.5; /* of the slope */
+    double radius = csg_enclosure_radius(q->half), square = 0;
+    csg_enclosure *e = &halves->planes[0];
+    if (!csg_tape_taylor(&q->tape, q->c, radius, f))
+        return false;
+    csg_taylor rest = *f;
+    memset(rest.slope, 0, sizeof rest.slope);
+    *e = (csg_enclosure){.value = f->value, .stray = csg_taylor_stray(f, radius)};
+    memcpy(e->slope, f->slope, sizeof e->slope);
+    e->below = e->above = csg_taylor_reach(&rest, radius);
+    for (int k = 0; k < 3; k++)
+        square += e->slope[k] * e->slope[k];
+    halves->plane_count = halves->length = 1;
+    halves->code[0] = 0;
+    return e->stray < MOST * sqrt(square);
+}
+
 /* turn: how far neighbours' s may be from this one's. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
-                            double *turn)
+                            const csg_taylor *f, double *turn)
 {
     csg_section_group groups[CSG_HALVES_MOST];
     double half = q->half;
     int count = csg_section_find_groups(halves, half, groups);
     account a = {.low = 0};
     *turn = 1;
-    find_faces(q, halves, count == 1, &a);
+    find_faces(half, halves, count == 1 ? f : NULL, &a);
     if (count != 1) {
         for (int i = 0; i < count; i++)
             take_group(halves, half, &groups[i], is_selected(j, q, halves, &groups[i]), &a);
@@ -264,14 +283,20 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
                      csg_measure_cube *q, void *out)
 {
     csg_halves halves;
+    csg_taylor f;
     double turn = 1;
     account *a = out;
-    if (!csg_measure_enclose_with_strays(walk, worker, q, &halves))
+    bool is_smooth = enclose_smooth(q, &f, &halves);
+    if (is_smooth)
+        csg_measure_take_state(q, &halves);
+    else if (!csg_measure_enclose_with_strays(walk, worker, q, &halves)) {
         *a = unknown(q->half);
-    else if (q->state != CSG_CELL_SURFACE)
+        return q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
+    }
+    if (q->state != CSG_CELL_SURFACE)
         *a = plain(q->half, q->state);
     else
-        *a = find_account(user, q, &halves, &turn);
+        *a = find_account(user, q, &halves, is_smooth ? &f : NULL, &turn);
     return a->is_unbounded && q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
 }
 

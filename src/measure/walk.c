@@ -81,29 +81,31 @@ bool csg_measure_divide(const csg_measure_walk *w, csg_measure_worker *s,
     return true;
 }
 
-/* What the planes tell of the whole cube. */
-static bool take_state(csg_measure_cube *q, const csg_halves *halves)
+void csg_measure_take_state(csg_measure_cube *q, const csg_halves *halves)
 {
     csg_truth state = csg_halves_state(halves, q->half);
     if (state != CSG_TRUTH_OPEN)
         q->state = state == CSG_TRUTH_YES ? CSG_CELL_INSIDE : CSG_CELL_OUTSIDE;
-    return true;
 }
 
 bool csg_measure_enclose(const csg_measure_walk *w, csg_measure_worker *s, csg_measure_cube *q,
                          csg_halves *out)
 {
-    return csg_halves_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats,
-                           out) &&
-           take_state(q, out);
+    bool known =
+        csg_halves_find(w->kernel, &q->tape, q->c, q->half, s->scratch, w->scratch_floats, out);
+    if (known)
+        csg_measure_take_state(q, out);
+    return known;
 }
 
 bool csg_measure_enclose_with_strays(const csg_measure_walk *w, csg_measure_worker *s,
                                      csg_measure_cube *q, csg_halves *out)
 {
-    return csg_halves_find_with_strays(w->kernel, &q->tape, q->c, q->half, s->scratch,
-                                       w->scratch_floats, out) &&
-           take_state(q, out);
+    bool known = csg_halves_find_with_strays(w->kernel, &q->tape, q->c, q->half, s->scratch,
+                                             w->scratch_floats, out);
+    if (known)
+        csg_measure_take_state(q, out);
+    return known;
 }
 
 static bool keep(csg_measure_walk *w, const csg_measure_cube *cube)

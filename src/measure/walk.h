@@ -60,6 +60,8 @@ bool csg_measure_divide(const csg_measure_walk *walk, csg_measure_worker *worker
 /* The solid in the cube. It may become INSIDE or OUTSIDE. False: nothing is known. */
 bool csg_measure_enclose(const csg_measure_walk *walk, csg_measure_worker *worker,
                          csg_measure_cube *cube, csg_halves *out);
+/* What planes tell of the whole cube. */
+void csg_measure_take_state(csg_measure_cube *cube, const csg_halves *halves);
 /* The same by csg_halves_find_with_strays. */
 bool csg_measure_enclose_with_strays(const csg_measure_walk *walk, csg_measure_worker *worker,
                                      csg_measure_cube *cube, csg_halves *out);

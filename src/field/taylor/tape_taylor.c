@@ -17,7 +17,8 @@ enum { NODES_MOST = 24 /* of a tape; more are not looked at */ };
 
 typedef struct operand {
     csg_smooth piece;
-    uint32_t node;   /* the last of its subtree */
+    uint32_t node; /* the last of its subtree */
+    bool is_known;
     bool has_slopes; /* of unit length */
 } operand;
 
@@ -76,13 +77,12 @@ static double rounding_of(const walker *w, const float *parameters)
            OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
 }
 
-static bool push_leaf(walker *w, uint32_t index)
+static bool find_leaf(const walker *w, const csg_tape_node *leaf, operand *o)
 {
-    const csg_tape_node *leaf = &w->tape->nodes[index];
+    static const double OF_DIRECTIONS = 1e-6; /* by floats of own parameters */
     const float *parameters = w->tape->parameters + leaf->parameters;
     csg_smooth_leaf l;
     csg_smooth own;
-    operand *o = &w->stack[w->top++];
     if (leaf->warp || !csg_op_is_primitive(leaf->op) ||
         csg_node_is_curve(csg_op_node_kind(leaf->op)))
         return false;
@@ -92,7 +92,7 @@ static bool push_leaf(walker *w, uint32_t index)
     o->piece = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
                                (double)parameters[CSG_LEAF_SIGMA], &own);
     o->piece.f.error += rounding_of(w, parameters);
-    o->node = index;
+    o->piece.f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
     o->has_slopes = w->with_slopes;
     return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.cubic);
 }
@@ -100,12 +100,33 @@ static bool push_leaf(walker *w, uint32_t index)
 /* ---- operators of two --------------------------------------------------------------------------
  */
 
+/* Two that are the same but for rounding, as flush faces are: how far apart, at most. INFINITY:
+ * they are not. */
+static double apart_at_most(const walker *w, const csg_taylor *d)
+{
+    static const double SAME = 0x1p-16; /* of the radius */
+    double most = fabs(d->value) + csg_taylor_reach(d, w->radius);
+    return most <= SAME * w->radius ? most : INFINITY;
+}
+
+/* And their gradients, by no more than twice that over the radius. */
+static void add_apart(const walker *w, csg_taylor *f, double apart)
+{
+    f->error += apart;
+    f->turned += 2 * apart / w->radius;
+}
+
 /* Which of two decides all over the ball: 0, 1, or -1, it is not the same everywhere. turn: 1 of a
  * union, -1 of an intersection. Where only the sign matters an operand that is outside of a union
  * decides nowhere. */
-static int decider(const walker *w, const operand *a, const operand *b, double turn, bool signs)
+static int decider(const walker *w, operand *a, const operand *b, double turn, bool signs)
 {
     csg_taylor d = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    double apart = apart_at_most(w, &d);
+    if (isfinite(apart)) {
+        add_apart(w, &a->piece.f, apart);
+        return 0;
+    }
     if (csg_taylor_reach(&d, w->radius) < fabs(d.value))
         return turn * d.value > 0 ? 0 : 1;
     const csg_taylor *f[2] = {&a->piece.f, &b->piece.f};
@@ -164,6 +185,8 @@ static bool join_siblings(walker *w, uint32_t index)
     double support = (double)parameters[CSG_OPERATOR_SUPPORT];
     bool is_sharp = node->join_blend == CSG_BLEND_SHARP, signs = w->signs[index];
     w->top--;
+    if (!a->is_known || !b->is_known)
+        return false;
     if (is_sharp || (node->join_blend == CSG_BLEND_ORTHOGONAL && signs)) {
         int which = decider(w, a, b, turn, signs);
         if (which == 1)
@@ -230,6 +253,9 @@ static bool combine_round(walker *w, const csg_tape_node *node)
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, sum = 0, squares = 0, level = 0;
     uint32_t order[NODES_MOST], m = 0;
     csg_taylor out;
+    for (uint32_t i = 0; i < node->arity; i++)
+        if (!of[i].is_known)
+            return false;
     sort_operands(of, node->arity, turn, order);
     for (; m < node->arity; m++) {
         double f = turn * of[order[m]].piece.f.value;
@@ -335,18 +361,59 @@ static int find_end(const walker *w, const csg_tape_node *node, const operand *o
     return ended;
 }
 
+/* How far the operand that reaches farthest does so beyond the fillet's plane p. */
+static double beyond_all(const walker *w, const csg_tape_node *node, const operand *of, uint32_t p)
+{
+    const csg_tape *tape = w->tape;
+    uint32_t number = tape->nodes[of[p].node].join_parameters;
+    double most = -INFINITY;
+    for (uint32_t k = 0; k < node->arity - node->planes; k++)
+        most =
+            fmax(most, (double)tape->parameters[tape->nodes[of[k].node].join_parameters + number]);
+    return most;
+}
+
+/* An operand's face that is flush with a plane at which the fillet ends: all operands are behind
+ * the plane, and so is the fillet, which is no less than that operand. So both have its sign,
+ * whatever the other operands are. */
+static bool is_flush(const walker *w, const csg_tape_node *node, operand *of, double turn)
+{
+    for (uint32_t p = node->arity - node->planes; p < node->arity; p++) {
+        double beyond = beyond_all(w, node, of, p);
+        for (uint32_t k = 0; k < node->arity - node->planes && isfinite(beyond); k++) {
+            if (!of[p].is_known || !of[k].is_known)
+                continue;
+            csg_taylor d = csg_taylor_sum(&of[k].piece.f, -1, &of[p].piece.f);
+            d.value -= turn * beyond;
+            double apart = apart_at_most(w, &d);
+            if (!isfinite(apart))
+                continue;
+            of[0] = of[k];
+            add_apart(w, &of[0].piece.f, apart + 1e-6 * fabs(beyond));
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The largest operand alone, or two that blend and no third one near. */
-static bool combine_fillet(walker *w, const csg_tape_node *node)
+static bool combine_fillet(walker *w, const csg_tape_node *node, bool signs)
 {
     const float *parameters = w->tape->parameters + node->parameters;
     operand *of = &w->stack[w->top - node->arity];
     double r = (double)parameters[CSG_OPERATOR_N];
     double turn = node->op == CSG_OP_FILLET_UNION ? 1 : -1;
+    static const double FLUSH = 2e-6; /* 1 - cos of an angle that is rounding */
     uint32_t order[NODES_MOST], count = node->arity - node->planes;
     csg_taylor d, x, out;
+    w->top -= node->arity - 1;
+    if (signs && is_flush(w, node, of, turn))
+        return true;
     if (parameters[CSG_FILLET_IS_SKEWED] != 0 || !count)
         return false;
-    w->top -= node->arity - 1;
+    for (uint32_t i = 0; i < node->arity; i++)
+        if (!of[i].is_known)
+            return false;
     sort_operands(of, count, turn, order);
     const operand *a = &of[order[0]];
     for (uint32_t i = count > 1 ? 2 : 1; i < count; i++) {
@@ -354,6 +421,7 @@ static bool combine_fillet(walker *w, const csg_tape_node *node)
         if (!(turn * x.value - csg_taylor_reach(&x, w->radius) > 2 * r))
             return false;
     }
+    double more = 0;
     if (count > 1) {
         const operand *b = &of[order[1]];
         x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
@@ -362,6 +430,13 @@ static bool combine_fillet(walker *w, const csg_tape_node *node)
         if (!is_alone) {
             if (!find_turn(w, a, b, &d) || !(most_of(w, &d) < CSG_FILLET_FADE))
                 return false;
+            /* one face: what is added is no more than where both are equal, r d / 4 and a little */
+            if (most_of(w, &d) < FLUSH && isfinite(apart_at_most(w, &x))) {
+                more = apart_at_most(w, &x) + 0.26 * r * most_of(w, &d);
+                is_alone = true;
+            }
+        }
+        if (!is_alone) {
             is_alone = turn * x.value - reach > fmax(r * most_of(w, &d), 0);
             if (!is_alone && !(apart + reach < r * least_of(w, &d)))
                 return false;
@@ -382,6 +457,7 @@ static bool combine_fillet(walker *w, const csg_tape_node *node)
         }
     }
     of[0] = *a;
+    add_apart(w, &of[0].piece.f, more);
     return true;
 }
 
@@ -418,19 +494,22 @@ static bool walk(walker *w)
     for (uint32_t i = 0; i < w->tape->count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
-        if (csg_op_is_leaf(node->op))
-            known = push_leaf(w, i);
-        else if (csg_op_is_round(node->op))
+        if (csg_op_is_leaf(node->op)) {
+            operand *o = &w->stack[w->top++];
+            o->is_known = find_leaf(w, node, o); /* a fillet may do without */
+            known = o->is_known || w->with_slopes;
+        } else if (csg_op_is_round(node->op)) {
             known = combine_round(w, node);
-        else if (csg_op_is_fillet(node->op))
-            known = combine_fillet(w, node);
+        } else if (csg_op_is_fillet(node->op)) {
+            known = combine_fillet(w, node, w->signs[i]);
+        }
         if (!known)
             return false;
         w->stack[w->top - 1].node = i;
         if (node->join && !join_siblings(w, i))
             return false;
     }
-    return w->top == 1;
+    return w->top == 1 && w->stack[0].is_known;
 }
 
 bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg_taylor *out)
