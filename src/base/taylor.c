@@ -63,7 +63,8 @@ double csg_taylor_reach(const csg_taylor *a, double r)
 double csg_taylor_stray(const csg_taylor *a, double r)
 {
     const double *b = a->bend;
-    double rows[3] = {fabs(b[XX]) + fabs(b[XY]) + fabs(b[XZ]), fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
+    double rows[3] = {fabs(b[XX]) + fabs(b[XY]) + fabs(b[XZ]),
+                      fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
                       fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
     double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
     return ((norm + a->twice * r) * r + a->turned) * (1 + 1e-12);

@@ -174,11 +174,13 @@ static csg_truth is_selected(const job *j, const csg_measure_cube *q, const csg_
     return turned == CSG_TRUTH_YES && low == CSG_TRUTH_YES ? CSG_TRUTH_YES : CSG_TRUTH_OPEN;
 }
 
-/* One group alone can be the surface: it is a graph. */
-static void take_graph(const csg_section_group *g, double half, csg_truth selected, account *a)
+/* One group alone can be the surface: it is a graph. excess: what its area is at most beside its
+ * flow, or INFINITY. */
+static void take_graph(const csg_section_group *g, double half, csg_truth selected, double excess,
+                       account *a)
 {
     double most = most_of(g, half), flow = fmax(flow_of(a, g->direction).most, 0);
-    double more = g->cosine > 0 ? (1 / g->cosine - 1) * flow : INFINITY;
+    double more = fmin(g->cosine > 0 ? (1 / g->cosine - 1) * flow : INFINITY, excess);
     if (selected == CSG_TRUTH_NO)
         return;
     if (selected == CSG_TRUTH_YES && flow + more <= most) {
@@ -235,6 +237,12 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor *f, csg_halves 
     return e->stray < MOST * sqrt(square);
 }
 
+static double excess_of(const csg_taylor *f, double half)
+{
+    csg_graph graph;
+    return f && csg_graph_find(f, half, &graph) ? graph.excess : INFINITY;
+}
+
 /* turn: how far neighbours' s may be from this one's. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
                             const csg_taylor *f, double *turn)
@@ -256,7 +264,7 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
         *turn = 0;
     else if (selected == CSG_TRUTH_YES)
         *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
-    take_graph(&groups[0], half, selected, &a);
+    take_graph(&groups[0], half, selected, excess_of(f, half), &a);
     return a;
 }
 

@@ -29,6 +29,7 @@ typedef struct graph {
     const csg_taylor *f;
     polynomial p;
     double half, fall, third;
+    double tangent, bent; /* at least the surface's length along a direction of the face; |H| */
     csg_graph *out;
 } graph;
 
@@ -72,6 +73,8 @@ static bool find_fall(graph *g)
             all += p->h[i][k] * p->h[i][k];
     }
     double tangent = sqrt(1 + gradient / (g->fall * g->fall));
+    g->tangent = tangent;
+    g->bent = sqrt(all);
     g->third = 0.5 * sqrt(row * all) * tangent * tangent * tangent / (g->fall * g->fall);
     return isfinite(g->third);
 }
@@ -261,6 +264,30 @@ static void add_difference(graph *g, const square *q)
     g->out->lost += area * fmax(reach - middle, 0);
 }
 
+/* With p the surface's gradient over the face and p_0 the plane's, the area of a piece of the
+ * surface is the integral of sqrt(1 + p^2), and what flows through it along the plane's normal that
+ * of its tangent at p_0: they differ by (p - p_0)^2 / 2 at most, whose mean over the square is that
+ * at its centre and of the bends. p = -(f_x, f_y) / f_z is off by (1 + |p|) times what the field's
+ * gradient is, over f_z; as much as the surface's place makes of the bends; and by the square's
+ * third derivatives, half of 6 third |d|^2. */
+static void add_excess(graph *g, const square *q, double touched)
+{
+    const csg_taylor *f = g->f;
+    double steep = fabs(g->p.s[2]), apart = 0;
+    double turned = f->turned + f->twice * 3 * g->half * g->half;
+    double bend = q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] + 2 * q->bend[2] * q->bend[2];
+    for (int i = 0; i < 2; i++) {
+        double d = q->g[i] - g->p.s[i] / steep;
+        apart += d * d;
+    }
+    double off = g->fall > turned ? turned / (g->fall - turned) : INFINITY;
+    off = 1.4143 * g->tangent * (off + g->bent * q->error / g->fall);
+    off += 6 * g->third * q->half * q->half;
+    double root = sqrt(apart + bend * q->half * q->half / 3) + off;
+    double most = sqrt(apart) + sqrt(2 * bend) * q->half + off;
+    g->out->excess += fmin(2 * q->half * q->half * root * root, 0.5 * touched * most * most);
+}
+
 static bool add_square(graph *g, square *q)
 {
     double h = g->half, most = 3 * h * h, room = g->f->error + g->f->cubic * most * sqrt(most);
@@ -274,13 +301,15 @@ static bool add_square(graph *g, square *q)
     double open = 0, area = 4 * q->half * q->half, beyond = q->reach + q->error;
     double line = (fabs(q->g[0]) + fabs(q->g[1])) * q->half + beyond;
     g->out->volume += part_above(q, -h, &open) - part_above(q, h, &open);
+    double touched = area;
     if (q->z - line > -h && q->z + line < h) {
         g->out->error += area * q->mean + open;
     } else {
-        double touched =
-            find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
-        g->out->error += fmin(area * q->mean, fmax(touched, 0) * q->error) + open;
+        touched = find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
+        touched = fmax(touched, 0);
+        g->out->error += fmin(area * q->mean, touched * q->error) + open;
     }
+    add_excess(g, q, touched);
     add_difference(g, q);
     return true;
 }
@@ -289,7 +318,7 @@ bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out)
 {
     graph g = {.f = f, .half = half, .out = out};
     double whole = 8 * half * half * half;
-    out->volume = out->error = out->gained = out->lost = 0;
+    out->volume = out->error = out->gained = out->lost = out->excess = 0;
     order_axes(f, &g.p);
     if (!find_fall(&g))
         return false;
@@ -303,6 +332,7 @@ bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out)
     csg_cut_cube(half, f->value, f->slope, out->plane);
     out->error = fmin(out->error * (1 + 1e-9), whole);
     out->gained = fmin(out->gained * (1 + 1e-9), whole);
+    out->excess *= 1 + 1e-9;
     out->lost = fmin(out->lost * (1 + 1e-9), whole);
     return isfinite(out->volume + out->error + out->gained + out->lost);
 }

@@ -29,8 +29,12 @@ static double room_at(const csg_taylor *f, const double x[3])
     return f->error + f->cubic * square * sqrt(square);
 }
 
+/* Operands may be dropped that the reference's gradient is of, at places where both are zero; and
+ * the reference leaves out of a fillet's gradient how the operands' own turn. */
+static bool is_folded;
+
 typedef struct tally {
-    uint32_t known, bent, near;
+    uint32_t known, bent, near, turned;
 } tally;
 
 /* Along the slope from a random point to where the polynomial is its room and a little more, or as
@@ -84,6 +88,50 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
     }
 }
 
+static void gradient_at(const csg_taylor *f, const double x[3], double out[3])
+{
+    static const int AT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (int i = 0; i < 3; i++) {
+        out[i] = f->slope[i];
+        for (int k = 0; k < 3; k++)
+            out[i] += f->bend[AT[i][k]] * x[k];
+    }
+}
+
+/* On the surface in the cube: gradients are where they are promised. */
+static void try_gradients(const mesh_case *m, csg_random *random, const double c[3], double half,
+                          tally *seen)
+{
+    csg_taylor f;
+    if (!csg_tape_taylor(&m->field->tape, c, csg_enclosure_radius(half), &f))
+        return;
+    csg_vec3 center = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
+    for (int i = 0; i < POINTS / 4; i++) {
+        csg_vec3 d = csg_vec3_make(csg_random_uniform(random, -half, half),
+                                   csg_random_uniform(random, -half, half),
+                                   csg_random_uniform(random, -half, half));
+        csg_sample s = test_sample(m->scene, csg_vec3_add(center, d));
+        for (int step = 0; step < 6; step++) {
+            double square = csg_vec3_dot(s.gradient, s.gradient);
+            if (square > 0.01)
+                d = csg_vec3_sub(d, csg_vec3_scale(s.gradient, s.value / square));
+            s = test_sample(m->scene, csg_vec3_add(center, d));
+        }
+        const double x[3] = {d.x, d.y, d.z}, g[3] = {s.gradient.x, s.gradient.y, s.gradient.z};
+        double promised[3], off = 0, square = csg_vec3_dot(d, d);
+        if (!(fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))) <= half && fabs(s.value) < 1e-12))
+            continue;
+        gradient_at(&f, x, promised);
+        for (int k = 0; k < 3; k++)
+            off += (g[k] - promised[k]) * (g[k] - promised[k]);
+        if (sqrt(off) > f.turned + f.twice * square + 1e-9)
+            fail_msg("a gradient is %g off, %g is promised, in a cube of half %g", sqrt(off),
+                     f.turned + f.twice * square, half);
+        assert_true(f.turned + f.twice * square < 1e-9 + csg_taylor_stray(&f, 2 * half));
+        seen->turned++;
+    }
+}
+
 /* Cubes near the surface, centres and halves exact as floats. */
 static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
 {
@@ -106,6 +154,8 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
         c[1] = half * round(p.y / half);
         c[2] = half * round(p.z / half);
         try_cube(m, random, c, half, seen);
+        if (!is_folded)
+            try_gradients(m, random, c, half, seen);
     }
 }
 
@@ -118,7 +168,7 @@ static void models_hold(void **state)
         mesh_case_begin(&m, 1);
         test_random_shapes = test_random_curves = false;
         test_random_rules = i % 8 == 2;
-        test_random_fillets = i % 4 == 3;
+        test_random_fillets = is_folded = i % 4 == 3;
         csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 4));
         assert_true(root != CSG_NODE_NONE);
         mesh_case_compile(&m, root);
@@ -126,7 +176,7 @@ static void models_hold(void **state)
         mesh_case_end(&m);
     }
     assert_true(seen.known > 1000 * test_times && seen.bent > 500 * test_times);
-    assert_true(seen.near > 5000 * test_times);
+    assert_true(seen.near > 5000 * test_times && seen.turned > 1000 * test_times);
 }
 
 /* Two of every kind of primitive, turned, with a blend that the models know. */
@@ -150,12 +200,14 @@ static void blends_hold(void **state)
             csg_primitive_of(kind)->example(&random, v);
             ids[k] = posed_anyhow(&m, csg_build_primitive(&m.builder, kind, v, NOWHERE), &random);
         }
+        is_folded = KINDS[i % 5] == CSG_BLEND_FILLET;
         csg_blend blend = {KINDS[i % 5], csg_random_uniform(&random, 0.05, 0.4)};
         mesh_case_compile(&m, joined(&m, JOINS[i % 3], blend, ids[0], ids[1]));
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
     assert_true(seen.known > 5000 * test_times && seen.near > 30000 * test_times);
+    assert_true(seen.turned > 10000 * test_times);
 }
 
 /* ---- graphs ------------------------------------------------------------------------------------
@@ -222,6 +274,34 @@ static double columns_of(const csg_taylor *f, double half, int along, int face, 
     return sum * (face < 0 ? 8 * half * half * half : 4 * half * half);
 }
 
+/* The integral over the surface in the cube of 1 - the cosine with the plane's normal. */
+static double excess_of(const csg_taylor *f, double half, int along)
+{
+    enum { SIDE = 160 };
+    int i = (along + 1) % 3, k = (along + 2) % 3;
+    double sum = 0, slope = sqrt(f->slope[0] * f->slope[0] + f->slope[1] * f->slope[1] +
+                                 f->slope[2] * f->slope[2]);
+    for (int n = 0; n < SIDE * SIDE; n++) {
+        double x[3], g[3], length = 0, with = 0;
+        x[i] = half * ((2 * (n % SIDE) + 1.0) / SIDE - 1);
+        x[k] = half * ((2 * (n / SIDE) + 1.0) / SIDE - 1);
+        x[along] = 0;
+        for (int step = 0; step < 8; step++) {
+            gradient_at(f, x, g);
+            x[along] -= polynomial_at(f, x) / g[along];
+        }
+        if (!(fabs(x[along]) < half && fabs(polynomial_at(f, x)) < 1e-9 * half))
+            continue;
+        gradient_at(f, x, g);
+        for (int a = 0; a < 3; a++) {
+            length += g[a] * g[a];
+            with += g[a] * f->slope[a] / slope;
+        }
+        sum += (sqrt(length) - with) / fabs(g[along]);
+    }
+    return sum * 4 * half * half / (SIDE * SIDE);
+}
+
 static int steepest_but(const csg_taylor *f, int but)
 {
     int up = but == 0;
@@ -233,7 +313,7 @@ static int steepest_but(const csg_taylor *f, int but)
 static void graphs_hold(void **state)
 {
     uint32_t known = 0, faces = 0, tight = 0;
-    for (uint64_t i = 0; i < 1500 * test_times; i++) {
+    for (uint64_t i = 0; i < 500 * test_times; i++) {
         csg_random random = {.state = 35000 + test_first_seed + i};
         double half = exp(csg_random_uniform(&random, -3, 3)), area, error;
         csg_taylor f = random_polynomial(&random, half);
@@ -246,6 +326,10 @@ static void graphs_hold(void **state)
                 fail_msg("seed %d: %g off, %g promised, of %g", (int)i, off, graph.error, whole);
             assert_true(moved <= graph.gained + 2e-5 * whole);
             assert_true(moved >= -graph.lost - 2e-5 * whole);
+            double excess = excess_of(&f, half, steepest_but(&f, -1));
+            if (excess > graph.excess + 1e-4 * half * half)
+                fail_msg("seed %d: an area's excess of %g, %g promised", (int)i, excess,
+                         graph.excess);
             tight += graph.error < 1e-3 * whole;
             known++;
         }
@@ -259,8 +343,8 @@ static void graphs_hold(void **state)
             faces++;
         }
     }
-    assert_true(known > 1000 * test_times && tight > 700 * test_times);
-    assert_true(faces > 800 * test_times);
+    assert_true(known > 300 * test_times && tight > 200 * test_times);
+    assert_true(faces > 250 * test_times);
 }
 
 int main(int argc, char **argv)
