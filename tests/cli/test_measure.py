@@ -159,13 +159,30 @@ class Measure(unittest.TestCase):
         self.check("cube(2);", status=2, options=("--junit", os.path.join(self.folder, "r.xml")))
 
     def test_as_close_as_seconds_allow(self):
-        scene = "torus(8, 2);"  # 1e-4 takes more than two million cubes
+        scene = "linear_extrude(height = 10, twist = 90) square(4, center = true);"  # 1e-4 takes more than two million cubes
         found = self.measure(scene)
         self.assertFalse(found["reached"])
-        self.holds(found["volume"], 64 * PI ** 2)
+        self.holds(found["volume"], 160)
         self.assertLess(found["volume"][1] - found["volume"][0], 2e-3 * found["volume"][0])
         self.assertLess(found["cubes"], 2 ** 22)
         self.measure(scene, "--to", 1e-5, "--timeout", 1, status=2)
+
+    def test_smooth_surfaces_are_known_by_their_bends(self):
+        """With their areas, and edges."""
+        fillet = "union(blend = fillet(3)) { translate([0, 0, -10]) cube([40, 40, 20], center = true); translate([0, 0, -5]) cylinder(h = 35, r = 6); }"
+        foot = 2 * PI * (81 * (1 - PI / 4) - 4.5)  # of 2 pi (9 - u) (3 - sqrt(9 - u^2)), u from 0 to 3
+        for scene, volume in (
+            ("sphere(10);", 4000 * PI / 3),
+            ("torus(8, 2);", 64 * PI ** 2),
+            ("cylinder(h = 12, r1 = 5, r2 = 1);", 124 * PI),
+            ("cube([10, 20, 30], round = 2);", 6 * 16 * 26 + 4 * (6 * 16 + 16 * 26 + 6 * 26) + 4 * PI * 48 + 32 * PI / 3),
+            ("rotate([10, 20, 30]) scale(1.7) sphere(3);", 4 * PI / 3 * 5.1 ** 3),
+            (fillet, 40 * 40 * 20 + PI * 36 * 30 + foot),
+        ):
+            with self.subTest(scene):
+                found = self.measure(scene, "--to", 1e-4)
+                self.assertTrue(found["reached"])
+                self.holds(found["volume"], volume)
 
     def test_density(self):
         found = self.measure("cube(2);", "--to", 1e-3, "--density", 3)
