@@ -174,17 +174,18 @@ static csg_truth is_selected(const job *j, const csg_measure_cube *q, const csg_
     return turned == CSG_TRUTH_YES && low == CSG_TRUTH_YES ? CSG_TRUTH_YES : CSG_TRUTH_OPEN;
 }
 
-/* One group alone can be the surface: it is a graph. excess: what its area is at most beside its
- * flow, or INFINITY. */
-static void take_graph(const csg_section_group *g, double half, csg_truth selected, double excess,
-                       account *a)
+/* One group alone can be the surface: it is a graph. excess: what its area is beside its flow, as
+ * far as that is known otherwise. */
+static void take_graph(const csg_section_group *g, double half, csg_truth selected,
+                       csg_section excess, account *a)
 {
     double most = most_of(g, half), flow = fmax(flow_of(a, g->direction).most, 0);
-    double more = fmin(g->cosine > 0 ? (1 / g->cosine - 1) * flow : INFINITY, excess);
+    double more = fmin(g->cosine > 0 ? (1 / g->cosine - 1) * flow : INFINITY, excess.most);
     if (selected == CSG_TRUTH_NO)
         return;
     if (selected == CSG_TRUTH_YES && flow + more <= most) {
         memcpy(a->s, g->direction, sizeof a->s);
+        a->low += fmin(excess.least, more);
         add_up_to(a, more);
     } else {
         add_up_to(a, fmin(flow + more, most));
@@ -237,10 +238,12 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor *f, csg_halves 
     return e->stray < MOST * sqrt(square);
 }
 
-static double excess_of(const csg_taylor *f, double half)
+static csg_section excess_of(const csg_taylor *f, double half)
 {
     csg_graph graph;
-    return f && csg_graph_find(f, half, &graph) ? graph.excess : INFINITY;
+    if (!f || !csg_graph_find(f, half, &graph))
+        return (csg_section){0, INFINITY};
+    return (csg_section){graph.least_excess, graph.excess};
 }
 
 /* turn: how far neighbours' s may be from this one's. */

@@ -14,8 +14,7 @@ typedef struct csg_graph {
     /* Of the half space at the model's plane, around the cube's centre; the solid is that, more by
      * parts whose volumes add up to `gained` at most, less by `lost`. */
     double plane[CSG_INTEGRALS], gained, lost;
-    double
-        excess; /* at least what the surface's area is beside its flow along the plane's normal */
+    double least_excess, excess; /* the surface's area beside its flow along the plane's normal */
 } csg_graph;
 
 /* f: in the ball around the cube. False: the surface may not be a graph there. */

@@ -56,13 +56,9 @@ static void try_strays(const mesh_case *m, csg_random *random, const double c[3]
         csg_vec3 d = csg_vec3_make(csg_random_uniform(random, -half, half),
                                    csg_random_uniform(random, -half, half),
                                    csg_random_uniform(random, -half, half));
-        csg_sample s = test_sample(m->scene, csg_vec3_add(middle, d));
-        for (int step = 0; step < 6; step++) {
-            double square = csg_vec3_dot(s.gradient, s.gradient);
-            if (square > 0.01)
-                d = csg_vec3_sub(d, csg_vec3_scale(s.gradient, s.value / square));
-            s = test_sample(m->scene, csg_vec3_add(middle, d));
-        }
+        csg_vec3 on = test_towards_surface(m->scene, csg_vec3_add(middle, d), 6);
+        csg_sample s = test_sample(m->scene, on);
+        d = csg_vec3_sub(on, middle);
         bool is_there = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))) <= half;
         if (!is_there || !(fabs(s.value) < 1e-7))
             continue;
@@ -165,10 +161,7 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
                 p = csg_vec3_make(csg_random_uniform(random, b.min.x, b.min.x + size.x),
                                   csg_random_uniform(random, b.min.y, b.min.y + size.y),
                                   csg_random_uniform(random, b.min.z, b.min.z + size.z));
-                csg_sample s = test_sample(m->scene, p);
-                double square = csg_vec3_dot(s.gradient, s.gradient);
-                if (square > 0.01) /* towards the surface */
-                    p = csg_vec3_sub(p, csg_vec3_scale(s.gradient, s.value / square));
+                p = test_towards_surface(m->scene, p, 1);
                 f = test_sample(m->scene, p).value;
             }
             p = csg_vec3_sub(p, m->field->center);

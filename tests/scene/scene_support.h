@@ -48,6 +48,18 @@ static inline csg_sample test_sample(const csgm_scene *scene, csg_vec3 p)
     return sample;
 }
 
+/* Steps of Newton along the gradient, towards the surface. */
+static inline csg_vec3 test_towards_surface(const csgm_scene *scene, csg_vec3 p, int steps)
+{
+    for (int i = 0; i < steps; i++) {
+        csg_sample s = test_sample(scene, p);
+        double square = csg_vec3_dot(s.gradient, s.gradient);
+        if (square > 0.01)
+            p = csg_vec3_sub(p, csg_vec3_scale(s.gradient, s.value / square));
+    }
+    return p;
+}
+
 static inline csg_vec3 test_point(csg_random *random, double reach)
 {
     return csg_vec3_make(csg_random_uniform(random, -reach, reach),
