@@ -4,6 +4,7 @@
  * random polynomials the volume below them and their areas on faces are within the errors of what
  * columns add up to.
  */
+#include <inttypes.h>
 #include <stdlib.h>
 
 #include "field/taylor/tape_taylor.h"
@@ -32,6 +33,7 @@ static double room_at(const csg_taylor *f, const double x[3])
 /* Operands may be dropped that the reference's gradient is of, at places where both are zero; and
  * the reference leaves out of a fillet's gradient how the operands' own turn. */
 static bool is_folded;
+static uint64_t seed; /* of the scene */
 
 typedef struct tally {
     uint32_t known, bent, near, turned;
@@ -82,9 +84,10 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
         csg_vec3 p = csg_vec3_add(center, csg_vec3_make(x[0], x[1], x[2]));
         double value = test_sample(m->scene, p).value;
         if (side * value < 0)
-            fail_msg("f = %g at (%.9g, %.9g, %.9g), called %s by the room of %g, in a cube of half "
-                     "%g",
-                     value, p.x, p.y, p.z, side > 0 ? "inside" : "outside", room_at(&f, x), half);
+            fail_msg("seed %" PRIu64 ": f = %g at (%.9g, %.9g, %.9g), called %s by the room of %g, "
+                     "in a cube of half %g",
+                     seed, value, p.x, p.y, p.z, side > 0 ? "inside" : "outside", room_at(&f, x),
+                     half);
     }
 }
 
@@ -121,8 +124,8 @@ static void try_gradients(const mesh_case *m, csg_random *random, const double c
         for (int k = 0; k < 3; k++)
             off += (g[k] - promised[k]) * (g[k] - promised[k]);
         if (sqrt(off) > f.turned + f.twice * square + 1e-9)
-            fail_msg("a gradient is %g off, %g is promised, in a cube of half %g", sqrt(off),
-                     f.turned + f.twice * square, half);
+            fail_msg("seed %" PRIu64 ": a gradient is %g off, %g is promised, in a cube of half %g",
+                     seed, sqrt(off), f.turned + f.twice * square, half);
         assert_true(f.turned + f.twice * square < 1e-9 + csg_taylor_stray(&f, 2 * half));
         seen->turned++;
     }
@@ -153,7 +156,7 @@ static void models_hold(void **state)
 {
     tally seen = {0};
     for (uint64_t i = 0; i < 80 * test_times; i++) {
-        csg_random random = {.state = 31000 + test_first_seed + i};
+        csg_random random = {.state = seed = 31000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
         test_random_shapes = test_random_curves = false;
@@ -178,7 +181,7 @@ static void blends_hold(void **state)
                                           CSG_NODE_INTERSECTION};
     tally seen = {0};
     for (uint64_t i = 0; i < 120 * test_times; i++) {
-        csg_random random = {.state = 33000 + test_first_seed + i};
+        csg_random random = {.state = seed = 33000 + test_first_seed + i};
         csg_node_id ids[2];
         mesh_case m;
         mesh_case_begin(&m, 1);

@@ -139,6 +139,14 @@ static int decider(const walker *w, operand *a, const operand *b, double turn, b
     return -1;
 }
 
+/* What a float makes of a blend's length: values move by no more than it does, gradients' shares by
+ * as much of themselves. */
+static void add_rounding_of(double length, csg_taylor *f)
+{
+    f->error += 0x1p-24 * length;
+    f->turned += 0x1p-22;
+}
+
 /* (a + b) / 2 + excess. */
 static void take_mean(const csg_taylor *a, const csg_taylor *b, double factor,
                       const csg_taylor *excess, csg_taylor *out)
@@ -164,12 +172,14 @@ static bool blend_two(const walker *w, const csg_tape_node *node, const csg_tayl
         excess = csg_taylor_square(&x, w->radius);
         excess = csg_taylor_raised(csg_taylor_scaled(&excess, 1 / n), n / 16);
         take_mean(a, b, turn, &excess, out);
+        add_rounding_of(n, out);
         return true;
     case CSG_BLEND_HYPERBOLA:
         constant = csg_taylor_constant(sqrt(n));
         if (!csg_taylor_norm(pair, 2, w->radius, &excess))
             return false;
         take_mean(a, b, 0.5 * turn, &excess, out);
+        add_rounding_of(sqrt(n), out);
         return true;
     default:
         return false;
@@ -241,6 +251,7 @@ static bool find_level(const walker *w, const operand *of, const uint32_t *order
     if (!csg_taylor_root(&under, w->radius, &root))
         return false;
     *out = csg_taylor_raised(csg_taylor_sum(&mean, -turn, &root), turn * width);
+    add_rounding_of(width, out);
     return true;
 }
 
@@ -328,6 +339,7 @@ static bool fillet_two(const walker *w, const csg_taylor *a, const csg_taylor *b
         return false;
     take_mean(a, b, -0.5 * turn, &root, out);
     *out = csg_taylor_raised(*out, turn * r);
+    add_rounding_of(r, out);
     return true;
 }
 
