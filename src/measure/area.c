@@ -240,10 +240,9 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor *f, csg_halves 
 
 static csg_section excess_of(const csg_taylor *f, double half)
 {
-    csg_graph graph;
-    if (!f || !csg_graph_find(f, half, &graph))
-        return (csg_section){0, INFINITY};
-    return (csg_section){graph.least_excess, graph.excess};
+    csg_section excess;
+    bool is_known = f && csg_graph_excess(f, half, &excess.least, &excess.most);
+    return is_known ? excess : (csg_section){0, INFINITY};
 }
 
 /* turn: how far neighbours' s may be from this one's. */
@@ -300,11 +299,9 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     bool is_smooth = enclose_smooth(q, &f, &halves);
     if (is_smooth)
         csg_measure_take_state(q, &halves);
-    else if (!csg_measure_enclose_with_strays(walk, worker, q, &halves)) {
+    if (!is_smooth && !csg_measure_enclose_with_strays(walk, worker, q, &halves))
         *a = unknown(q->half);
-        return q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
-    }
-    if (q->state != CSG_CELL_SURFACE)
+    else if (q->state != CSG_CELL_SURFACE)
         *a = plain(q->half, q->state);
     else
         *a = find_account(user, q, &halves, is_smooth ? &f : NULL, &turn);

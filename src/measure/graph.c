@@ -21,19 +21,23 @@ typedef struct polynomial {
 typedef struct square {
     double at[2], half;
     double z, g[2], bend[3];   /* xx, yy, xy */
+    double norm;               /* of these */
     double tilt[2], metric[3]; /* g - p_0; M */
     double reach;              /* |d . Z d / 2| is no more */
     double error, mean;        /* along z: most, and the mean's bound */
+    double beyond;             /* the surface is that close to the linear part */
 } square;
 
 typedef struct graph {
     const csg_taylor *f;
     polynomial p;
     double half, fall, third;
+    double room;          /* the model is off by no more anywhere in the cube */
     double tangent, bent; /* at least the surface's length along a direction of the face; |H| */
-    bool with_area;
-    csg_graph *out;
 } graph;
+
+/* What the square's columns are. */
+typedef enum columns { EMPTY, FULL, CROSSED, UNKNOWN } columns;
 
 static const int AT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}}; /* in a model's bends */
 
@@ -129,9 +133,8 @@ static bool expand(const graph *g, square *q)
             p->h[i][k] + p->h[i][2] * q->g[k] + p->h[k][2] * q->g[i] + a * q->g[i] * q->g[k];
         q->bend[n] = -second[n] / down;
     }
-    double norm =
-        sqrt(q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] + 2 * q->bend[2] * q->bend[2]);
-    q->reach = norm * q->half * q->half * (1 + 1e-12);
+    q->norm = sqrt(q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] + 2 * q->bend[2] * q->bend[2]);
+    q->reach = q->norm * q->half * q->half * (1 + 1e-12);
     return true;
 }
 
@@ -140,13 +143,13 @@ static bool expand(const graph *g, square *q)
  * over the cube, no root of the field is farther than half as far again, and what the model is off
  * there counts alone. Means over the square: |x|^3 is no more than its largest square times the
  * root of the mean square; that of |d|^3 is at most 0.6223^(3/4) half^3 by the mean of |d|^4. */
-static void find_errors(const graph *g, square *q, double room)
+static void find_errors(const graph *g, square *q)
 {
     static const double MEAN_CUBE = 0.701, MOST_CUBE = 2.8285;
     const csg_taylor *f = g->f;
     double h = q->half, third = g->third * h * h * h;
     double far = fabs(q->z) + (fabs(q->g[0]) + fabs(q->g[1])) * h + q->reach + MOST_CUBE * third;
-    double z = room < 0.5 * far * g->fall ? fmin(1.5 * far, g->half) : g->half;
+    double z = g->room < 0.5 * far * g->fall ? fmin(1.5 * far, g->half) : g->half;
     double most = z * z, mean = z * z + 2.0 / 3 * h * h;
     for (int i = 0; i < 2; i++) {
         most += (fabs(q->at[i]) + h) * (fabs(q->at[i]) + h);
@@ -154,6 +157,19 @@ static void find_errors(const graph *g, square *q, double room)
     }
     q->error = (f->error + f->cubic * most * sqrt(most)) / g->fall + MOST_CUBE * third;
     q->mean = (f->error + f->cubic * most * sqrt(mean)) / g->fall + MEAN_CUBE * third;
+    q->beyond = q->reach + q->error;
+}
+
+static columns place(const graph *g, square *q)
+{
+    if (sign_at(&g->p, q, g->half, g->room) > 0)
+        return FULL;
+    if (sign_at(&g->p, q, -g->half, g->room) < 0)
+        return EMPTY;
+    if (!expand(g, q))
+        return UNKNOWN;
+    find_errors(g, q);
+    return CROSSED;
 }
 
 /* ---- parts of a square -------------------------------------------------------------------------
@@ -240,7 +256,22 @@ static double part_above(const square *q, double level, double *open)
     return here.bent;
 }
 
-/* ---- the cube ----------------------------------------------------------------------------------
+/* Where the surface may be in the cube, at most; and where it is for certain, at least: `beyond` is
+ * negative then. */
+static double shown(const graph *g, const square *q, double beyond)
+{
+    double up = g->half + beyond;
+    return fmax(find_part(q, q->z + up).area - find_part(q, q->z - up).area, 0);
+}
+
+/* All of the square is seen in the cube. */
+static bool is_whole(const graph *g, const square *q)
+{
+    double line = (fabs(q->g[0]) + fabs(q->g[1])) * q->half + q->beyond;
+    return q->z - line > -g->half && q->z + line < g->half;
+}
+
+/* ---- the solid ----------------------------------------------------------------------------------
  */
 
 /* How much the plane's half space has above or below that height of the square's columns. */
@@ -253,28 +284,39 @@ static double plane_over(const graph *g, const square *q, double turn, double le
     return fmin(fmax(turn * (z - level) + line, 0), 2 * g->half);
 }
 
-static void add_whole(graph *g, const square *q, int sign)
-{
-    double area = 4 * q->half * q->half;
-    if (sign > 0) {
-        g->out->volume += area * 2 * g->half;
-        g->out->gained += area * plane_over(g, q, -1, g->half);
-    } else {
-        g->out->lost += area * plane_over(g, q, 1, -g->half);
-    }
-}
-
-/* The solid's columns differ from the half space's by no more than the surfaces do. */
-static void add_difference(graph *g, const square *q)
+/* Where the surface is, the solid's columns differ from the half space's by no more than the
+ * surfaces do. */
+static bool add_columns(const graph *g, square *q, csg_graph *out)
 {
     const polynomial *p = &g->p;
-    double steep = fabs(p->s[2]), area = 4 * q->half * q->half, reach = q->reach + q->error;
+    double h = g->half, area = 4 * q->half * q->half, steep = fabs(p->s[2]), open = 0;
+    switch (place(g, q)) {
+    case EMPTY:
+        out->lost += area * plane_over(g, q, 1, -h);
+        return true;
+    case FULL:
+        out->volume += area * 2 * h;
+        out->gained += area * plane_over(g, q, -1, h);
+        return true;
+    case UNKNOWN:
+        return false;
+    case CROSSED:
+        break;
+    }
+    out->volume += part_above(q, -h, &open) - part_above(q, h, &open);
+    double touched = is_whole(g, q) ? area : shown(g, q, q->beyond);
+    out->error += fmin(area * q->mean, touched * q->error) + open;
+    double reach = q->beyond;
     double middle = q->z - (p->value + p->s[0] * q->at[0] + p->s[1] * q->at[1]) / steep;
     for (int i = 0; i < 2; i++)
         reach += fabs(q->g[i] - p->s[i] / steep) * q->half;
-    g->out->gained += area * fmax(reach + middle, 0);
-    g->out->lost += area * fmax(reach - middle, 0);
+    out->gained += area * fmax(reach + middle, 0);
+    out->lost += area * fmax(reach - middle, 0);
+    return true;
 }
+
+/* ---- the surface -------------------------------------------------------------------------------
+ */
 
 /* With p the surface's gradient over the face and p_0 the plane's, the area of a piece of the
  * surface is the integral of A(p) = sqrt(1 + p^2), and what flows through it along the plane's
@@ -298,78 +340,87 @@ static void find_tilt(const graph *g, square *q)
  * sides. p = -(f_x, f_y) / f_z is off by (1 + |p|) times what the field's gradient is, over f_z; as
  * much as the surface's place makes of the bends; and by the square's third derivatives, half of
  * 6 third |d|^2. M is nowhere longer than 1. */
-static void add_excess(graph *g, const square *q, double beyond, bool is_whole)
+static void add_excess(const graph *g, const square *q, double *least_sum, double *most_sum)
 {
     static const double SIXTH = 0.1432;
     const csg_taylor *f = g->f;
     double h = g->half, half = q->half, turned = f->turned + f->twice * 3 * h * h;
-    double bend = q->bend[0] * q->bend[0] + q->bend[1] * q->bend[1] + 2 * q->bend[2] * q->bend[2];
     double off = g->fall > turned ? turned / (g->fall - turned) : INFINITY;
     off = 1.4143 * g->tangent * (off + g->bent * q->error / g->fall);
     off += 6 * g->third * half * half;
-    part in = find_part(q, q->z + h), out = find_part(q, q->z - h);
-    double touched = 4 * half * half, strips = 0, tilt = in.tilt - out.tilt;
-    if (!is_whole) {
-        double sure = find_part(q, q->z + h - beyond).area - find_part(q, q->z - h + beyond).area;
-        touched = find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
-        touched = fmax(touched, 0);
-        strips = touched - fmax(sure, 0);
+    double tilt = find_part(q, q->z + h).tilt - find_part(q, q->z - h).tilt;
+    double touched = 4 * half * half, strips = 0;
+    if (!is_whole(g, q)) {
+        touched = shown(g, q, q->beyond);
+        strips = touched - shown(g, q, -q->beyond);
     }
-    double most = sqrt(q->tilt[0] * q->tilt[0] + q->tilt[1] * q->tilt[1]) + sqrt(2 * bend) * half;
+    double most =
+        sqrt(q->tilt[0] * q->tilt[0] + q->tilt[1] * q->tilt[1]) + sqrt(2) * q->norm * half;
     double all = most + off, open = 0.5 * all * all * strips;
     open += touched * (SIXTH * all * all * all + (most + 0.5 * off) * off);
-    g->out->least_excess += fmax(tilt - open, 0);
-    g->out->excess += fmin(tilt + open, 0.5 * touched * all * all);
+    *least_sum += fmax(tilt - open, 0);
+    *most_sum += fmin(tilt + open, 0.5 * touched * all * all);
 }
 
-static bool add_square(graph *g, square *q)
+/* ---- the cube ----------------------------------------------------------------------------------
+ */
+
+static bool begin(graph *g, const csg_taylor *f, double half, int *up)
 {
-    double h = g->half, most = 3 * h * h, room = g->f->error + g->f->cubic * most * sqrt(most);
-    if (sign_at(&g->p, q, h, room) > 0 || sign_at(&g->p, q, -h, room) < 0) {
-        add_whole(g, q, sign_at(&g->p, q, h, room) > 0 ? 1 : -1);
-        return true;
-    }
-    if (!expand(g, q))
-        return false;
-    find_errors(g, q, room);
-    find_tilt(g, q);
-    double open = 0, area = 4 * q->half * q->half, beyond = q->reach + q->error;
-    double line = (fabs(q->g[0]) + fabs(q->g[1])) * q->half + beyond;
-    g->out->volume += part_above(q, -h, &open) - part_above(q, h, &open);
-    bool is_whole = q->z - line > -h && q->z + line < h;
-    double touched =
-        is_whole ? area
-                 : find_part(q, q->z + h + beyond).area - find_part(q, q->z - h - beyond).area;
-    g->out->error += fmin(area * q->mean, fmax(touched, 0) * q->error) + open;
-    if (g->with_area)
-        add_excess(g, q, beyond, is_whole);
-    add_difference(g, q);
-    return true;
+    double most = 3 * half * half;
+    *g = (graph){.f = f, .half = half, .room = f->error + f->cubic * most * sqrt(most)};
+    *up = order_axes(f, &g->p);
+    return find_fall(g);
+}
+
+static square square_of(const graph *g, int i)
+{
+    square q = {.half = g->half / SIDE};
+    q.at[0] = (2 * (i % SIDE) + 1) * q.half - g->half;
+    q.at[1] = (2 * (i / SIDE) + 1) * q.half - g->half;
+    return q;
 }
 
 bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out)
 {
-    graph g = {.f = f, .half = half, .with_area = true, .out = out};
+    graph g;
+    int up;
     double whole = 8 * half * half * half;
     out->volume = out->error = out->gained = out->lost = 0;
-    out->least_excess = out->excess = 0;
-    order_axes(f, &g.p);
-    if (!find_fall(&g))
+    if (!begin(&g, f, half, &up))
         return false;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        square q = {.half = half / SIDE};
-        q.at[0] = (2 * (i % SIDE) + 1) * q.half - half;
-        q.at[1] = (2 * (i / SIDE) + 1) * q.half - half;
-        if (!add_square(&g, &q))
+        square q = square_of(&g, i);
+        if (!add_columns(&g, &q, out))
             return false;
     }
     csg_cut_cube(half, f->value, f->slope, out->plane);
     out->error = fmin(out->error * (1 + 1e-9), whole);
     out->gained = fmin(out->gained * (1 + 1e-9), whole);
-    out->least_excess *= 1 - 1e-9;
-    out->excess *= 1 + 1e-9;
     out->lost = fmin(out->lost * (1 + 1e-9), whole);
     return isfinite(out->volume + out->error + out->gained + out->lost);
+}
+
+bool csg_graph_excess(const csg_taylor *f, double half, double *least, double *most)
+{
+    graph g;
+    int up;
+    *least = *most = 0;
+    if (!begin(&g, f, half, &up))
+        return false;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        square q = square_of(&g, i);
+        columns of = place(&g, &q);
+        if (of == UNKNOWN)
+            return false;
+        if (of != CROSSED)
+            continue;
+        find_tilt(&g, &q);
+        add_excess(&g, &q, least, most);
+    }
+    *least *= 1 - 1e-9;
+    *most *= 1 + 1e-9;
+    return isfinite(*most);
 }
 
 /* The model on the face, as one that does not depend on the axis. */
@@ -392,16 +443,17 @@ bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double
 {
     const csg_taylor face = on_face(f, side * half, axis);
     csg_graph sum = {.volume = 0};
-    graph g = {.f = &face, .half = half, .out = &sum};
-    int up = order_axes(&face, &g.p), along = (up + 1) % 3 == axis ? 0 : 1;
+    graph g;
+    int up;
     double piece = half / SIDE, whole = 4 * half * half;
-    if (up == axis || !find_fall(&g))
+    if (!begin(&g, &face, half, &up) || up == axis)
         return false;
+    int along = (up + 1) % 3 == axis ? 0 : 1;
     for (int i = 0; i < SIDE; i++) {
         square q = {.half = piece};
         q.at[along] = half;
         q.at[1 - along] = (2 * i + 1) * piece - half;
-        if (!add_square(&g, &q))
+        if (!add_columns(&g, &q, &sum))
             return false;
     }
     *area = sum.volume / (2 * piece);

@@ -14,13 +14,15 @@ typedef struct csg_graph {
     /* Of the half space at the model's plane, around the cube's centre; the solid is that, more by
      * parts whose volumes add up to `gained` at most, less by `lost`. */
     double plane[CSG_INTEGRALS], gained, lost;
-    double least_excess, excess; /* the surface's area beside its flow along the plane's normal */
 } csg_graph;
 
 /* f: in the ball around the cube. False: the surface may not be a graph there. */
 bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out);
 
-/* The same of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
+/* What the surface's area in the cube is beside its flow along the plane's normal. */
+bool csg_graph_excess(const csg_taylor *f, double half, double *least, double *most);
+
+/* Of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
  * solid, within *error of *area. False: the surface may not be a graph there. */
 bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double *area,
                     double *error);

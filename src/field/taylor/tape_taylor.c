@@ -220,6 +220,14 @@ static bool join_siblings(walker *w, uint32_t index)
 /* ---- round -------------------------------------------------------------------------------------
  */
 
+static bool are_known(const operand *of, uint32_t count)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < count; i++)
+        all = all && of[i].is_known;
+    return all;
+}
+
 /* Largest first. */
 static void sort_operands(const operand *of, uint32_t count, double turn, uint32_t *order)
 {
@@ -264,9 +272,8 @@ static bool combine_round(walker *w, const csg_tape_node *node)
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, sum = 0, squares = 0, level = 0;
     uint32_t order[NODES_MOST], m = 0;
     csg_taylor out;
-    for (uint32_t i = 0; i < node->arity; i++)
-        if (!of[i].is_known)
-            return false;
+    if (!are_known(of, node->arity))
+        return false;
     sort_operands(of, node->arity, turn, order);
     for (; m < node->arity; m++) {
         double f = turn * of[order[m]].piece.f.value;
@@ -343,57 +350,58 @@ static bool fillet_two(const walker *w, const csg_taylor *a, const csg_taylor *b
     return true;
 }
 
+/* How far the operand that reaches farthest does so beyond the fillet's plane p. */
+static double beyond_of(const walker *w, const operand *of, const uint32_t *which, uint32_t count,
+                        uint32_t p)
+{
+    const csg_tape *tape = w->tape;
+    uint32_t number = tape->nodes[of[p].node].join_parameters;
+    double most = -INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t reaches = tape->nodes[of[which[i]].node].join_parameters;
+        most = fmax(most, (double)tape->parameters[reaches + number]);
+    }
+    return most;
+}
+
+/* Of that, by floats. */
+static const double BEYOND_ROUNDING = 1e-6;
+
 /* Of the planes at which the fillet ends: none is nearer than its surface (0), one decides (1, in
  * *out), or it is not the same everywhere (-1). */
 static int find_end(const walker *w, const csg_tape_node *node, const operand *of,
                     const uint32_t pair[2], double turn, csg_taylor *out)
 {
-    const csg_tape *tape = w->tape;
     int ended = 0;
     for (uint32_t p = node->arity - node->planes; p < node->arity; p++) {
-        const float *parameters = tape->parameters;
-        uint32_t number = tape->nodes[of[p].node].join_parameters;
-        double beyond = -INFINITY;
-        for (int i = 0; i < 2; i++)
-            beyond = fmax(
-                beyond, (double)parameters[tape->nodes[of[pair[i]].node].join_parameters + number]);
+        double beyond = beyond_of(w, of, pair, 2, p), rounding = BEYOND_ROUNDING * fabs(beyond);
         if (!isfinite(beyond))
             continue;
         csg_taylor inside = csg_taylor_raised(of[p].piece.f, turn * beyond);
         csg_taylor over = csg_taylor_sum(&inside, -1, out);
-        double reach = csg_taylor_reach(&over, w->radius) + 1e-6 * fabs(beyond);
+        double reach = csg_taylor_reach(&over, w->radius) + rounding;
         if (turn * over.value > reach)
             continue;
         if (!(turn * over.value < -reach))
             return -1;
         *out = inside;
-        out->error += 1e-6 * fabs(beyond);
+        out->error += rounding;
         ended = 1;
     }
     return ended;
 }
 
-/* How far the operand that reaches farthest does so beyond the fillet's plane p. */
-static double beyond_all(const walker *w, const csg_tape_node *node, const operand *of, uint32_t p)
-{
-    const csg_tape *tape = w->tape;
-    uint32_t number = tape->nodes[of[p].node].join_parameters;
-    double most = -INFINITY;
-    for (uint32_t k = 0; k < node->arity - node->planes; k++)
-        most =
-            fmax(most, (double)tape->parameters[tape->nodes[of[k].node].join_parameters + number]);
-    return most;
-}
-
 /* An operand's face that is flush with a plane at which the fillet ends: all operands are behind
  * the plane, and so is the fillet, which is no less than that operand. So both have its sign,
  * whatever the other operands are. */
-static bool is_flush(const walker *w, const csg_tape_node *node, operand *of, double turn)
+static bool is_flush(const walker *w, const csg_tape_node *node, operand *of, const uint32_t *all,
+                     double turn)
 {
-    for (uint32_t p = node->arity - node->planes; p < node->arity; p++) {
-        double beyond = beyond_all(w, node, of, p);
-        for (uint32_t k = 0; k < node->arity - node->planes && isfinite(beyond); k++) {
-            if (!of[p].is_known || !of[k].is_known)
+    uint32_t count = node->arity - node->planes;
+    for (uint32_t p = count; p < node->arity; p++) {
+        double beyond = beyond_of(w, of, all, count, p);
+        for (uint32_t k = 0; k < count && isfinite(beyond) && of[p].is_known; k++) {
+            if (!of[k].is_known)
                 continue;
             csg_taylor d = csg_taylor_sum(&of[k].piece.f, -1, &of[p].piece.f);
             d.value -= turn * beyond;
@@ -401,11 +409,55 @@ static bool is_flush(const walker *w, const csg_tape_node *node, operand *of, do
             if (!isfinite(apart))
                 continue;
             of[0] = of[k];
-            add_apart(w, &of[0].piece.f, apart + 1e-6 * fabs(beyond));
+            add_apart(w, &of[0].piece.f, apart + BEYOND_ROUNDING * fabs(beyond));
             return true;
         }
     }
     return false;
+}
+
+/* How the two largest operands meet all over the ball. */
+typedef enum meeting {
+    APART,    /* the larger one is alone */
+    FLUSH,    /* as good as one, up to *more */
+    BLENDING, /* at the turn *d */
+    MIXED
+} meeting;
+
+static meeting find_meeting(const walker *w, const operand *a, const operand *b, double r,
+                            double turn, csg_taylor *d, double *more)
+{
+    static const double ROUNDING = 2e-6; /* 1 - cos of an angle that is no more than that */
+    csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    double reach = csg_taylor_reach(&x, w->radius), least = turn * x.value - reach;
+    if (least > CSG_FILLET_PAIR_REACH * r)
+        return APART;
+    if (!find_turn(w, a, b, d) || !(most_of(w, d) < CSG_FILLET_FADE))
+        return MIXED;
+    if (most_of(w, d) < ROUNDING && isfinite(apart_at_most(w, &x))) {
+        /* what is added is most where both are equal, r d / 4 and a little */
+        *more = apart_at_most(w, &x) + 0.26 * r * most_of(w, d);
+        return FLUSH;
+    }
+    if (least > fmax(r * most_of(w, d), 0))
+        return APART;
+    return fabs(x.value) + reach < r * least_of(w, d) ? BLENDING : MIXED;
+}
+
+/* Where a plane ends the fillet of two it must be above both, or one of them decides again. */
+static bool blend_pair(const walker *w, const csg_tape_node *node, const operand *of,
+                       const uint32_t pair[2], const csg_taylor *d, double r, double turn,
+                       csg_taylor *out)
+{
+    if (!fillet_two(w, &of[pair[0]].piece.f, &of[pair[1]].piece.f, d, r, turn, out))
+        return false;
+    int ended = find_end(w, node, of, pair, turn, out);
+    for (int i = 0; i < 2 && ended > 0; i++) {
+        csg_taylor over = csg_taylor_sum(out, -1, &of[pair[i]].piece.f);
+        if (!(turn * over.value > csg_taylor_reach(&over, w->radius)))
+            return false;
+    }
+    return ended >= 0;
 }
 
 /* The largest operand alone, or two that blend and no third one near. */
@@ -413,62 +465,32 @@ static bool combine_fillet(walker *w, const csg_tape_node *node, bool signs)
 {
     const float *parameters = w->tape->parameters + node->parameters;
     operand *of = &w->stack[w->top - node->arity];
-    double r = (double)parameters[CSG_OPERATOR_N];
+    double r = (double)parameters[CSG_OPERATOR_N], more = 0;
     double turn = node->op == CSG_OP_FILLET_UNION ? 1 : -1;
-    static const double FLUSH = 2e-6; /* 1 - cos of an angle that is rounding */
     uint32_t order[NODES_MOST], count = node->arity - node->planes;
-    csg_taylor d, x, out;
+    csg_taylor d = {.value = 0}, out = {.value = 0};
     w->top -= node->arity - 1;
-    if (signs && is_flush(w, node, of, turn))
+    for (uint32_t i = 0; i < count; i++)
+        order[i] = i;
+    if (signs && is_flush(w, node, of, order, turn))
         return true;
-    if (parameters[CSG_FILLET_IS_SKEWED] != 0 || !count)
+    if (parameters[CSG_FILLET_IS_SKEWED] != 0 || !count || !are_known(of, node->arity))
         return false;
-    for (uint32_t i = 0; i < node->arity; i++)
-        if (!of[i].is_known)
-            return false;
     sort_operands(of, count, turn, order);
     const operand *a = &of[order[0]];
-    for (uint32_t i = count > 1 ? 2 : 1; i < count; i++) {
-        x = csg_taylor_sum(&a->piece.f, -1, &of[order[i]].piece.f);
+    for (uint32_t i = 2; i < count; i++) {
+        csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &of[order[i]].piece.f);
         if (!(turn * x.value - csg_taylor_reach(&x, w->radius) > 2 * r))
             return false;
     }
-    double more = 0;
-    if (count > 1) {
-        const operand *b = &of[order[1]];
-        x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
-        double apart = fabs(x.value), reach = csg_taylor_reach(&x, w->radius);
-        bool is_alone = turn * x.value - reach > CSG_FILLET_PAIR_REACH * r;
-        if (!is_alone) {
-            if (!find_turn(w, a, b, &d) || !(most_of(w, &d) < CSG_FILLET_FADE))
-                return false;
-            /* one face: what is added is no more than where both are equal, r d / 4 and a little */
-            if (most_of(w, &d) < FLUSH && isfinite(apart_at_most(w, &x))) {
-                more = apart_at_most(w, &x) + 0.26 * r * most_of(w, &d);
-                is_alone = true;
-            }
-        }
-        if (!is_alone) {
-            is_alone = turn * x.value - reach > fmax(r * most_of(w, &d), 0);
-            if (!is_alone && !(apart + reach < r * least_of(w, &d)))
-                return false;
-        }
-        if (!is_alone) {
-            const uint32_t pair[2] = {order[0], order[1]};
-            if (!fillet_two(w, &a->piece.f, &b->piece.f, &d, r, turn, &out))
-                return false;
-            int ended = find_end(w, node, of, pair, turn, &out);
-            for (int i = 0; i < 2 && ended > 0; i++) {
-                csg_taylor over = csg_taylor_sum(&out, -1, &of[pair[i]].piece.f);
-                if (!(turn * over.value > csg_taylor_reach(&over, w->radius)))
-                    return false; /* where it ends below an operand that one decides */
-            }
-            of[0].piece.f = out;
-            of[0].has_slopes = false;
-            return ended >= 0;
-        }
-    }
+    meeting how = count > 1 ? find_meeting(w, a, &of[order[1]], r, turn, &d, &more) : APART;
+    if (how == MIXED || (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, &out)))
+        return false;
     of[0] = *a;
+    if (how == BLENDING) {
+        of[0].piece.f = out;
+        of[0].has_slopes = false;
+    }
     add_apart(w, &of[0].piece.f, more);
     return true;
 }
