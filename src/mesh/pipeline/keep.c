@@ -68,6 +68,8 @@ static bool is_sound(const counted *c, uint64_t bytes, const csg_slab *slab)
 {
     if (bytes < sizeof *c || c->first_cell != slab->first_cell || c->end_cell != slab->end_cell)
         return false;
+    if (c->features > bytes || c->list_bytes > bytes || c->blocks > bytes || c->doubts > bytes)
+        return false; /* or their sizes' sum might be more than a number holds */
     uint64_t rest = (slab->end_cell - slab->first_cell) * sizeof(csg_cell_count) +
                     c->features * sizeof(csg_feature) + c->list_bytes +
                     c->blocks * sizeof(csg_feature_block) + c->doubts * sizeof(csg_scan);
