@@ -7,7 +7,15 @@
 
 #include <math.h>
 
-enum { XX, YY, ZZ, XY, XZ, YZ, SECOND };
+enum { XX, YY, ZZ, XY, XZ, YZ };
+enum { XXX, YYY, ZZZ, XXY, XXZ, XYY, YYZ, XZZ, YZZ, XYZ };
+
+const unsigned char csg_taylor_second[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
+const unsigned char csg_taylor_third[3][3][3] = {
+    {{XXX, XXY, XXZ}, {XXY, XYY, XYZ}, {XXZ, XYZ, XZZ}},
+    {{XXY, XYY, XYZ}, {XYY, YYY, YYZ}, {XYZ, YYZ, YZZ}},
+    {{XXZ, XYZ, XZZ}, {XYZ, YYZ, YZZ}, {XZZ, YZZ, ZZZ}},
+};
 
 csg_taylor csg_taylor_constant(double value)
 {
@@ -16,15 +24,19 @@ csg_taylor csg_taylor_constant(double value)
 
 csg_taylor csg_taylor_sum(const csg_taylor *a, double factor, const csg_taylor *b)
 {
-    csg_taylor out = {.value = a->value + factor * b->value,
-                      .error = a->error + fabs(factor) * b->error,
-                      .cubic = a->cubic + fabs(factor) * b->cubic,
-                      .turned = a->turned + fabs(factor) * b->turned,
-                      .twice = a->twice + fabs(factor) * b->twice};
+    double size = fabs(factor);
+    csg_taylor out;
+    out.value = a->value + factor * b->value;
     for (int k = 0; k < 3; k++)
         out.slope[k] = a->slope[k] + factor * b->slope[k];
-    for (int n = 0; n < SECOND; n++)
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
         out.bend[n] = a->bend[n] + factor * b->bend[n];
+    for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
+        out.third[n] = a->third[n] + factor * b->third[n];
+    out.error = a->error + size * b->error;
+    out.quartic = a->quartic + size * b->quartic;
+    out.turned = a->turned + size * b->turned;
+    out.thrice = a->thrice + size * b->thrice;
     return out;
 }
 
@@ -32,6 +44,24 @@ csg_taylor csg_taylor_scaled(const csg_taylor *a, double factor)
 {
     const csg_taylor none = {.value = 0};
     return csg_taylor_sum(&none, factor, a);
+}
+
+csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3])
+{
+    csg_taylor out = *a;
+    for (int i = 0; i < 3; i++) {
+        double rest = 0;
+        for (int j = 0; j < 3; j++) {
+            double bend = a->bend[csg_taylor_second[i][j]], turned = 0;
+            for (int k = 0; k < 3; k++)
+                turned += a->third[csg_taylor_third[i][j][k]] * x[k];
+            out.bend[csg_taylor_second[i][j]] = bend + turned;
+            out.slope[i] += (bend + 0.5 * turned) * x[j];
+            rest += (0.5 * bend + turned / 6) * x[j];
+        }
+        out.value += (a->slope[i] + rest) * x[i];
+    }
+    return out;
 }
 
 csg_taylor csg_taylor_raised(csg_taylor a, double by)
@@ -46,17 +76,24 @@ static double square_of(const double v[3])
 }
 
 /* Frobenius', no less than the largest eigenvalue's size. */
-static double square_of_bend(const double b[SECOND])
+static double square_of_bend(const double b[CSG_TAYLOR_SECOND])
 {
     return b[XX] * b[XX] + b[YY] * b[YY] + b[ZZ] * b[ZZ] +
            2 * (b[XY] * b[XY] + b[XZ] * b[XZ] + b[YZ] * b[YZ]);
 }
 
+static double square_of_third(const double t[CSG_TAYLOR_THIRD])
+{
+    return t[XXX] * t[XXX] + t[YYY] * t[YYY] + t[ZZZ] * t[ZZZ] + 6 * t[XYZ] * t[XYZ] +
+           3 * (t[XXY] * t[XXY] + t[XXZ] * t[XXZ] + t[XYY] * t[XYY] + t[YYZ] * t[YYZ] +
+                t[XZZ] * t[XZZ] + t[YZZ] * t[YZZ]);
+}
+
 double csg_taylor_reach(const csg_taylor *a, double r)
 {
-    double bend = sqrt(square_of_bend(a->bend));
-    return ((sqrt(square_of(a->slope)) + (0.5 * bend + a->cubic * r) * r) * r + a->error) *
-           (1 + 1e-12);
+    double bend = 0.5 * sqrt(square_of_bend(a->bend)), third = sqrt(square_of_third(a->third)) / 6;
+    double all = sqrt(square_of(a->slope)) + (bend + (third + a->quartic * r) * r) * r;
+    return (all * r + a->error) * (1 + 1e-12);
 }
 
 /* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
@@ -67,7 +104,8 @@ double csg_taylor_stray(const csg_taylor *a, double r)
                       fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
                       fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
     double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
-    return ((norm + a->twice * r) * r + a->turned) * (1 + 1e-12);
+    double third = 0.5 * sqrt(square_of_third(a->third));
+    return ((norm + (third + a->thrice * r) * r) * r + a->turned) * (1 + 1e-12);
 }
 
 /* ---- functions of functions --------------------------------------------------------------------
@@ -93,93 +131,140 @@ csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, do
     csg_taylor_change c = {.linear = norm_of_slopes(u, count)};
     for (int i = 0; i < count; i++) {
         c.square += square_of_bend(u[i]->bend);
-        c.cubic += u[i]->cubic * u[i]->cubic;
+        c.cubic += square_of_third(u[i]->third);
+        c.quartic += u[i]->quartic * u[i]->quartic;
         c.error += u[i]->error * u[i]->error;
         c.turned += u[i]->turned * u[i]->turned;
-        c.twice += u[i]->twice * u[i]->twice;
+        c.thrice += u[i]->thrice * u[i]->thrice;
     }
-    c.turned = sqrt(c.turned);
-    c.twice = sqrt(c.twice);
     c.square = sqrt(c.square);
     c.cubic = sqrt(c.cubic);
+    c.quartic = sqrt(c.quartic);
     c.error = sqrt(c.error);
-    c.most = ((c.linear + (0.5 * c.square + c.cubic * r) * r) * r + c.error) * (1 + 1e-12);
+    c.turned = sqrt(c.turned);
+    c.thrice = sqrt(c.thrice);
+    double rest = 0.5 * c.square + (c.cubic / 6 + c.quartic * r) * r;
+    c.most = ((c.linear + rest * r) * r + c.error) * (1 + 1e-12);
     return c;
 }
 
-/* With d = S x + q the functions' change, |S x| <= linear |x| and |q| <= (square / 2 + cubic |x|)
- * |x|^2 + error, the outer function is
- *     value + slope . d + d . bend d / 2 + at most sixth |d|^3,
- * of which the polynomial has slope . (S x + half the bends) + S x . bend S x / 2. What is off:
- *     slope . (what q is beyond the bends)
- *     + norm (2 |S x| |q| + |q|^2) / 2 + sixth (linear |x| + |q|)^3,
- * each power of |x| above the third bounded by the third and the radius, and what the constants
- * are in taken together as a constant. */
+/* With d = l + b + t the functions' change at |x| = r, l and b its first and second order, the
+ * outer function is
+ *     value + slope . d + bend(d, d) / 2 + third(d, d, d) / 6 + at most fourth |d|^4,
+ * of which the polynomial has slope . d up to third order, bend(l, l) / 2 + bend(l, b) and
+ * third(l, l, l) / 6. What is off beside slope . (what the functions are off): with q = b + t
+ *     norm (|l| |t| + |q|^2 / 2) + third_norm |q| (3 |l|^2 + 3 |l| |q| + |q|^2) / 6 + fourth |d|^4.
+ */
+static double remainder_of(const csg_taylor_outer *o, const csg_taylor_change *c, double r,
+                           double error)
+{
+    double l = c->linear * r, t = (c->cubic / 6 + c->quartic * r) * r * r * r + error;
+    double q = 0.5 * c->square * r * r + t, d = l + q;
+    return o->norm * (l * t + 0.5 * q * q) + o->third_norm / 6 * q * (3 * l * d + q * q) +
+           o->fourth * d * d * d * d;
+}
+
+/* The gradient is (slope + bend d + third(d, d) / 2 + at most 4 fourth |d|^3) . (S + s + w), with S
+ * the slopes, s what they turn by at first order and w the rest. */
+static double turn_of(const csg_taylor_outer *o, const csg_taylor_change *c, double r, double error,
+                      double turned)
+{
+    double l = c->linear * r, t = (c->cubic / 6 + c->quartic * r) * r * r * r + error;
+    double q = 0.5 * c->square * r * r + t, d = l + q;
+    double s = c->square * r, w = (0.5 * c->cubic + c->thrice * r) * r * r + turned;
+    return o->norm * (t * c->linear + q * s + d * w) +
+           0.5 * o->third_norm * (q * (2 * l + q) * c->linear + d * d * (s + w)) +
+           4 * o->fourth * d * d * d * (c->linear + s + w);
+}
+
+/* Without the constants every term has a fourth power of r at least, or a third: at |x| it is no
+ * more than that share of it. What the constants add grows with r. */
 static void find_remainder(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
                            const csg_taylor_change *c, double r, csg_taylor *out)
 {
-    double bent = 0.5 * c->square + c->cubic * r; /* |q| <= bent |x|^2 + error */
-    double whole = c->linear + bent * r;          /* |d| <= whole |x| + error */
-    double q = bent * r * r, d = whole * r, e = c->error;
+    static const double ROUNDING = 1e-14; /* of differences */
+    double cube = r * r * r, off = remainder_of(o, c, r, 0), turn = turn_of(o, c, r, 0, 0);
+    out->quartic = off / (cube * r);
+    out->thrice = turn / cube;
+    out->error = fmax(remainder_of(o, c, r, c->error) - off, 0) + ROUNDING * off;
+    out->turned = fmax(turn_of(o, c, r, c->error, c->turned) - turn, 0) + ROUNDING * turn;
     for (int i = 0; i < count; i++) {
-        out->cubic += fabs(o->slope[i]) * u[i]->cubic;
-        out->error += fabs(o->slope[i]) * u[i]->error;
+        double slope = fabs(o->slope[i]);
+        out->quartic += slope * u[i]->quartic;
+        out->error += slope * u[i]->error;
+        out->thrice += slope * u[i]->thrice;
+        out->turned += slope * u[i]->turned;
     }
-    out->cubic += o->norm * bent * (c->linear + 0.5 * bent * r) + o->sixth * whole * whole * whole;
-    out->error += o->norm * e * (c->linear * r + q + 0.5 * e) +
-                  o->sixth * e * (3 * d * d + 3 * d * e + e * e);
-    out->cubic *= 1 + 1e-12;
+    out->quartic *= 1 + 1e-12;
     out->error *= 1 + 1e-12;
+    out->thrice *= 1 + 1e-12;
+    out->turned *= 1 + 1e-12;
 }
 
-/* The gradient is (slope + bend d + at most 3 sixth |d|^2) . (S + w), |w| <= square |x| + twice
- * |x|^2 + turned; what is off from slope . (S + the bends' x) + S^T bend S x, power by power as
- * above. */
-static void find_turn(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
-                      const csg_taylor_change *c, double r, csg_taylor *out)
+/* The third derivatives of factor (l . x) (x . b x) / 2. */
+static void add_product(double factor, const double l[3], const double b[CSG_TAYLOR_SECOND],
+                        double t[CSG_TAYLOR_THIRD])
 {
-    double bent = 0.5 * c->square + c->cubic * r, whole = c->linear + bent * r, e = c->error;
-    double w = c->square + c->twice * r, third = 3 * o->sixth * (c->linear + w * r + c->turned);
-    for (int i = 0; i < count; i++) {
-        out->twice += fabs(o->slope[i]) * u[i]->twice;
-        out->turned += fabs(o->slope[i]) * u[i]->turned;
-    }
-    out->twice += o->norm * (bent * c->linear + whole * w) + third * whole * whole;
-    out->turned += o->norm * (e * c->linear + whole * r * c->turned + e * (w * r + c->turned)) +
-                   third * (2 * whole * r + e) * e;
-    out->twice *= 1 + 1e-12;
-    out->turned *= 1 + 1e-12;
+    double x = factor * l[0], y = factor * l[1], z = factor * l[2];
+    t[XXX] += 3 * x * b[XX];
+    t[YYY] += 3 * y * b[YY];
+    t[ZZZ] += 3 * z * b[ZZ];
+    t[XXY] += y * b[XX] + 2 * x * b[XY];
+    t[XXZ] += z * b[XX] + 2 * x * b[XZ];
+    t[XYY] += x * b[YY] + 2 * y * b[XY];
+    t[YYZ] += z * b[YY] + 2 * y * b[YZ];
+    t[XZZ] += x * b[ZZ] + 2 * z * b[XZ];
+    t[YZZ] += y * b[ZZ] + 2 * z * b[YZ];
+    t[XYZ] += x * b[YZ] + y * b[XZ] + z * b[XY];
+}
+
+/* What the outer function's bends make of the functions' slopes, bend(l, l), and of these and
+ * their bends, bend(l, b). */
+static void add_bends(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
+                      double own[CSG_TAYLOR_SECOND], double third[CSG_TAYLOR_THIRD])
+{
+    static const int ROW[] = {0, 1, 2, 0, 0, 1}, COLUMN[] = {0, 1, 2, 1, 2, 2};
+    const double *bend = o->bend;
+    for (int i = 0; i < count; i++)
+        for (int j = i; j < count; j++, bend++) {
+            const double *a = u[i]->slope, *b = u[j]->slope;
+            double share = i == j ? 0.5 * *bend : *bend;
+            for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+                own[n] += share * (a[ROW[n]] * b[COLUMN[n]] + a[COLUMN[n]] * b[ROW[n]]);
+            add_product(*bend, a, u[j]->bend, third);
+            if (i != j)
+                add_product(*bend, b, u[i]->bend, third);
+        }
 }
 
 csg_taylor csg_taylor_compose(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
                               const csg_taylor_change *change, double r)
 {
-    static const int ROW[SECOND] = {0, 1, 2, 0, 0, 1}, COLUMN[SECOND] = {0, 1, 2, 1, 2, 2};
     csg_taylor out = {.value = o->value};
-    const double *bend = o->bend;
+    double own[CSG_TAYLOR_SECOND] = {0};
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++)
             out.slope[k] += o->slope[i] * u[i]->slope[k];
-        for (int n = 0; n < SECOND; n++)
+        for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
             out.bend[n] += o->slope[i] * u[i]->bend[n];
-        for (int j = i; j < count; j++, bend++) {
-            const double *a = u[i]->slope, *b = u[j]->slope;
-            double share = i == j ? 0.5 * *bend : *bend;
-            for (int n = 0; n < SECOND; n++)
-                out.bend[n] += share * (a[ROW[n]] * b[COLUMN[n]] + a[COLUMN[n]] * b[ROW[n]]);
-        }
+        for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
+            out.third[n] += o->slope[i] * u[i]->third[n];
     }
+    add_bends(o, u, count, own, out.third);
+    add_product(o->third, out.slope, own, out.third);
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+        out.bend[n] += own[n];
     find_remainder(o, u, count, change, r, &out);
-    find_turn(o, u, count, change, r, &out);
     return out;
 }
 
-/* Along a line the length d of a vector that makes the angle of cosine c with it has d''' = -3 c
- * (1 - c^2) / d^2, which is 2 / sqrt(3) / d^2 at most; a symmetric form is nowhere larger than on
- * some one direction. */
+/* Along a line the length d of a vector that makes the angle of cosine c with it, s^2 = 1 - c^2,
+ * has the derivatives d_1 = c, d_2 = s^2 / d, d_3 = -3 d_1 d_2 / d, 2 / sqrt(3) / d^2 at most, and
+ * d_4 = s^2 (12 - 15 s^2) / d^3, 3 / d^3 at most; a symmetric form is nowhere larger than on some
+ * one direction. */
 bool csg_taylor_norm(const csg_taylor *const *u, int count, double r, csg_taylor *out)
 {
-    static const double SIXTH = 0.19245008972987526 * (1 + 1e-12); /* 1 / (3 sqrt(3)) */
+    static const double THIRD = 1.1547005383792517 * (1 + 1e-12), FOURTH = 0.125;
     csg_taylor_outer o = {.value = 0};
     double square = 0;
     int at = 0;
@@ -189,47 +274,55 @@ bool csg_taylor_norm(const csg_taylor *const *u, int count, double r, csg_taylor
     for (int i = 0; i < count; i++)
         square += u[i]->value * u[i]->value;
     double length = sqrt(square), least = length - change.most;
-    if (!(least > 0.05 * length)) /* nearer, nothing is told by third derivatives */
+    if (!(least > 0.05 * length)) /* nearer, nothing is told by fourth derivatives */
         return false;
     o.value = length;
     for (int i = 0; i < count; i++)
         o.slope[i] = u[i]->value / length;
-    for (int i = 0; i < count; i++)
-        for (int j = i; j < count; j++)
-            o.bend[at++] = ((i == j) - o.slope[i] * o.slope[j]) / length;
-    o.norm = count > 1 ? 1 / length : 0;
-    o.sixth = count > 1 ? SIXTH / (least * least) : 0;
+    if (count > 1) {
+        for (int i = 0; i < count; i++)
+            for (int j = i; j < count; j++)
+                o.bend[at++] = ((i == j) - o.slope[i] * o.slope[j]) / length;
+        o.norm = 1 / length;
+        o.third = -1 / length;
+        o.third_norm = THIRD / square;
+        o.fourth = FOURTH / (least * least * least);
+    }
     *out = csg_taylor_compose(&o, u, count, &change, r);
     return true;
-}
-
-static csg_taylor of_one(double value, double slope, double bend, double sixth, const csg_taylor *a,
-                         const csg_taylor_change *change, double r)
-{
-    const csg_taylor_outer o = {
-        .value = value, .slope = {slope}, .bend = {bend}, .norm = fabs(bend), .sixth = sixth};
-    return csg_taylor_compose(&o, &a, 1, change, r);
 }
 
 bool csg_taylor_root(const csg_taylor *a, double r, csg_taylor *out)
 {
     csg_taylor_change change = csg_taylor_change_of(&a, 1, r);
-    double least = a->value - change.most, root = sqrt(a->value);
-    if (!(least > 0.02 * a->value))
+    double v = a->value, least = v - change.most, root = sqrt(v);
+    if (!(least > 0.02 * v))
         return false;
-    *out = of_one(root, 0.5 / root, -0.25 / (root * a->value),
-                  0.0625 / (least * least * sqrt(least)), a, &change, r);
+    const csg_taylor_outer o = {.value = root,
+                                .slope = {0.5 / root},
+                                .bend = {-0.25 / (root * v)},
+                                .third = -1 / root,
+                                .norm = 0.25 / (root * v),
+                                .third_norm = 0.375 / (root * v * v),
+                                .fourth = 0.0390625 / (least * least * least * sqrt(least))};
+    *out = csg_taylor_compose(&o, &a, 1, &change, r);
     return true;
 }
 
 bool csg_taylor_inverse(const csg_taylor *a, double r, csg_taylor *out)
 {
     csg_taylor_change change = csg_taylor_change_of(&a, 1, r);
-    double v = a->value, least = fabs(v) - change.most;
+    double v = a->value, square = v * v, least = fabs(v) - change.most;
     if (!(least > 0.1 * fabs(v)))
         return false;
-    *out = of_one(1 / v, -1 / (v * v), 2 / (v * v * v), 1 / (least * least * least * least), a,
-                  &change, r);
+    const csg_taylor_outer o = {.value = 1 / v,
+                                .slope = {-1 / square},
+                                .bend = {2 / (square * v)},
+                                .third = v,
+                                .norm = 2 / fabs(square * v),
+                                .third_norm = 6 / (square * square),
+                                .fourth = 1 / (least * least * least * least * least)};
+    *out = csg_taylor_compose(&o, &a, 1, &change, r);
     return true;
 }
 
@@ -244,6 +337,8 @@ csg_taylor csg_taylor_product(const csg_taylor *a, const csg_taylor *b, double r
 
 csg_taylor csg_taylor_square(const csg_taylor *a, double r)
 {
+    const csg_taylor_outer o = {
+        .value = a->value * a->value, .slope = {2 * a->value}, .bend = {2}, .norm = 2};
     csg_taylor_change change = csg_taylor_change_of(&a, 1, r);
-    return of_one(a->value * a->value, 2 * a->value, 2, 0, a, &change, r);
+    return csg_taylor_compose(&o, &a, 1, &change, r);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Taylor models of second order: a function in the ball |x| <= radius as its Taylor polynomial at
+ * Taylor models of third order: a function in the ball |x| <= radius as its Taylor polynomial at
  * 0, and how far it may be from that (Makino and Berz 2003). What is off is a constant and a share
- * of |x|^3, since that is how a smooth function leaves its polynomial; so an integral over the ball
+ * of |x|^4, since that is how a smooth function leaves its polynomial; so an integral over the ball
  * knows that it is off by little near the middle.
  */
 #ifndef CSG_BASE_TAYLOR_H
@@ -10,23 +10,29 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* |f(x) - (value + slope . x + x . bend x / 2)| <= error + cubic |x|^3, and its gradient is within
- * turned + twice |x|^2 of slope + bend x. */
+/* Second and third derivatives, in the order in which models have them: of these axes. */
+enum { CSG_TAYLOR_SECOND = 6, CSG_TAYLOR_THIRD = 10 };
+extern const unsigned char csg_taylor_second[3][3], csg_taylor_third[3][3][3];
+
+/* With P the polynomial of these derivatives at 0, f is within error + quartic |x|^4 of P(x), and
+ * its gradient within turned + thrice |x|^3 of that of P. */
 typedef struct csg_taylor {
     double value, slope[3];
-    double bend[6]; /* xx, yy, zz, xy, xz, yz */
-    double error, cubic;
-    double turned, twice;
+    double bend[CSG_TAYLOR_SECOND]; /* xx, yy, zz, xy, xz, yz */
+    double third[CSG_TAYLOR_THIRD]; /* xxx, yyy, zzz, xxy, xxz, xyy, yyz, xzz, yzz, xyz */
+    double error, quartic;
+    double turned, thrice;
 } csg_taylor;
 
 enum { CSG_TAYLOR_MOST = 4 /* functions that become one */ };
 
 /* A function of n <= CSG_TAYLOR_MOST numbers at the functions' values: its value, derivatives (the
- * Hessian's upper triangle by rows), at least the Hessian's norm there, and at least a sixth of the
- * third derivative's norm wherever the functions take it. */
+ * Hessian's upper triangle by rows; the third ones along any vector are 3 third times the first
+ * times the second along it), at least the norms of second and third derivatives there, and at
+ * least a 24th of the fourth derivative's norm wherever the functions take it. */
 typedef struct csg_taylor_outer {
     double value, slope[CSG_TAYLOR_MOST], bend[CSG_TAYLOR_MOST * (CSG_TAYLOR_MOST + 1) / 2];
-    double norm, sixth;
+    double third, norm, third_norm, fourth;
 } csg_taylor_outer;
 
 csg_taylor csg_taylor_constant(double value);
@@ -47,15 +53,18 @@ static inline double csg_taylor_most(const csg_taylor *a, double radius)
     return a->value + csg_taylor_reach(a, radius);
 }
 
+/* Its polynomial around x; what is off stays as it is. */
+csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3]);
+
 /* How far gradients in the ball may be from the one at its centre. */
 double csg_taylor_stray(const csg_taylor *a, double radius);
 
 /* The norms of the vector of the functions' changes and of its parts, by which an outer function
- * is off: |u(x) - u(0)| <= linear |x| + square |x|^2 / 2 + cubic |x|^3 + error, and so of its
- * gradients. */
+ * is off: |u(x) - u(0)| <= linear |x| + square |x|^2 / 2 + cubic |x|^3 / 6 + quartic |x|^4 + error,
+ * and so of its gradients. */
 typedef struct csg_taylor_change {
-    double linear, square, cubic, error, most; /* most: in the ball */
-    double turned, twice;
+    double linear, square, cubic, quartic, error, most; /* most: in the ball */
+    double turned, thrice;
 } csg_taylor_change;
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double radius);
 

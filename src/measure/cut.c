@@ -125,3 +125,19 @@ double csg_cut_cube(double half, double value, const double slope[3], double out
         memcpy(out, sum, sizeof sum);
     return fmin(fmax(sum[0], 0), whole);
 }
+
+/* A cube of edges 2, stretched. */
+double csg_cut_box(const double half[3], double value, const double slope[3],
+                   double out[CSG_INTEGRALS])
+{
+    static const int FIRST[] = {0, 1, 2, 0, 0, 1}, SECOND[] = {0, 1, 2, 1, 2, 2};
+    const double along[3] = {slope[0] * half[0], slope[1] * half[1], slope[2] * half[2]};
+    double whole = half[0] * half[1] * half[2];
+    csg_cut_cube(1, value, along, out);
+    out[CSG_INTEGRAL_ONE] *= whole;
+    for (int k = 0; k < 3; k++)
+        out[CSG_INTEGRAL_X + k] *= whole * half[k];
+    for (int n = 0; n < 6; n++)
+        out[CSG_INTEGRAL_XX + n] *= whole * half[FIRST[n]] * half[SECOND[n]];
+    return out[CSG_INTEGRAL_ONE];
+}

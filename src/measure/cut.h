@@ -11,6 +11,10 @@
  * [0, 8 half^3]. out: NULL where only the volume is asked for. */
 double csg_cut_cube(double half, double value, const double slope[3], double out[CSG_INTEGRALS]);
 
+/* The same of a box, |x_k| <= half[k]. */
+double csg_cut_box(const double half[3], double value, const double slope[3],
+                   double out[CSG_INTEGRALS]);
+
 /* About thirty tetrahedra of at most 7 half^3, each with some twenty roundings of 2^-53. */
 #define CSG_CUT_ROUNDING 0x1p-38
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The solid in a cube by a Taylor model of its field: along the axis that the surface faces most it
- * is a graph over the cube's face, and what is below is found with errors of fourth order where
- * planes (halves.h) leave sheets of second order.
+ * is a graph over the cube's face, and what is below is found with errors of sixth order where
+ * planes (halves.h) leave sheets of fourth order.
  */
 #ifndef CSG_MEASURE_GRAPH_H
 #define CSG_MEASURE_GRAPH_H
@@ -10,10 +10,9 @@
 #include "measure/cut.h"
 
 typedef struct csg_graph {
-    double volume, error; /* the solid's in the cube is no farther from it */
-    /* Of the half space at the model's plane, around the cube's centre; the solid is that, more by
-     * parts whose volumes add up to `gained` at most, less by `lost`. */
-    double plane[CSG_INTEGRALS], gained, lost;
+    double integrals[CSG_INTEGRALS]; /* of the solid in the cube, around the cube's centre */
+    double error;                    /* of the volume */
+    double first, second;            /* of the first and second moments */
 } csg_graph;
 
 /* f: in the ball around the cube. False: the surface may not be a graph there. */

@@ -85,30 +85,26 @@ static void leave_open(const void *user, const csg_measure_cube *q, void *accoun
     add_open(s, q, volume_of(q));
 }
 
-/* Of a volume within `error` of the first of these integrals around the cube's centre, and of which
- * parts that add up to `misplaced` may be anywhere in the cube. */
-static void add_around(sum *s, const csg_measure_cube *q, double around_center[CSG_INTEGRALS],
-                       double error, double misplaced)
+/* Of a graph's integrals around the cube's centre. */
+static void add_graph(sum *s, const csg_measure_cube *q, csg_graph *g)
 {
     static const int FIRST[] = {0, 1, 2, 0, 0, 1}, SECOND[] = {0, 1, 2, 1, 2, 2};
-    const double *c = q->c, first = misplaced * q->half;
-    double off[CSG_INTEGRALS] = {error};
+    double off[CSG_INTEGRALS] = {g->error};
     for (int k = 0; k < 3; k++)
-        off[CSG_INTEGRAL_X + k] = fabs(c[k]) * error + first;
+        off[CSG_INTEGRAL_X + k] = fabs(q->c[k]) * g->error + g->first;
     for (int n = 0; n < 6; n++) {
-        double i = fabs(c[FIRST[n]]), k = fabs(c[SECOND[n]]);
-        off[CSG_INTEGRAL_XX + n] = i * k * error + (i + k) * first + first * q->half;
+        double i = fabs(q->c[FIRST[n]]), k = fabs(q->c[SECOND[n]]);
+        off[CSG_INTEGRAL_XX + n] = i * k * g->error + (i + k) * g->first + g->second;
     }
-    csg_integrals_shift(around_center, c);
+    csg_integrals_shift(g->integrals, q->c);
     for (int n = 0; n < CSG_INTEGRALS; n++) {
-        s->low[n] += around_center[n] - off[n];
-        s->high[n] += around_center[n] + off[n];
+        s->low[n] += g->integrals[n] - off[n];
+        s->high[n] += g->integrals[n] + off[n];
     }
 }
 
-/* Where the field is smooth in the cube: the half space's integrals, but for what the surface
- * leaves on either side of its plane. Returns what it leaves open; INFINITY: it is not smooth, or
- * may not be. */
+/* Where the field is smooth in the cube. Returns what it leaves open; INFINITY: it is not smooth,
+ * or may not be. */
 static double settle_smooth(const csg_measure_cube *q, sum *s)
 {
     csg_taylor f;
@@ -117,8 +113,7 @@ static double settle_smooth(const csg_measure_cube *q, sum *s)
         !csg_graph_find(&f, q->half, &graph))
         return INFINITY;
     *s = (sum){.cut = volume_of(q)};
-    graph.plane[CSG_INTEGRAL_ONE] = graph.volume;
-    add_around(s, q, graph.plane, graph.error, graph.gained + graph.lost);
+    add_graph(s, q, &graph);
     s->low[0] = fmax(s->low[0], 0);
     s->high[0] = fmin(s->high[0], volume_of(q));
     return s->high[0] - s->low[0];

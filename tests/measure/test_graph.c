@@ -18,16 +18,22 @@ enum { CUBES = 150, POINTS = 40 };
 
 static double polynomial_at(const csg_taylor *f, const double x[3])
 {
-    const double *b = f->bend;
-    return f->value + f->slope[0] * x[0] + f->slope[1] * x[1] + f->slope[2] * x[2] +
-           0.5 * (b[0] * x[0] * x[0] + b[1] * x[1] * x[1] + b[2] * x[2] * x[2]) +
-           b[3] * x[0] * x[1] + b[4] * x[0] * x[2] + b[5] * x[1] * x[2];
+    return csg_taylor_moved(f, x).value;
+}
+
+static double square_of(const double x[3])
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
 }
 
 static double room_at(const csg_taylor *f, const double x[3])
 {
-    double square = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-    return f->error + f->cubic * square * sqrt(square);
+    return f->error + f->quartic * square_of(x) * square_of(x);
+}
+
+static double turn_at(const csg_taylor *f, const double x[3])
+{
+    return f->turned + f->thrice * square_of(x) * sqrt(square_of(x));
 }
 
 /* The reference leaves out of a fillet's gradient how its operands' own turn: differences tell. */
@@ -66,7 +72,7 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
         return;
     csg_vec3 center = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
     seen->known++;
-    seen->bent += f.cubic > 0;
+    seen->bent += f.quartic > 0;
     for (int i = 0; i < POINTS; i++) {
         int side = i & 1 ? 1 : -1;
         double x[3];
@@ -92,12 +98,7 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
 
 static void gradient_at(const csg_taylor *f, const double x[3], double out[3])
 {
-    static const int AT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-    for (int i = 0; i < 3; i++) {
-        out[i] = f->slope[i];
-        for (int k = 0; k < 3; k++)
-            out[i] += f->bend[AT[i][k]] * x[k];
-    }
+    memcpy(out, csg_taylor_moved(f, x).slope, 3 * sizeof *out);
 }
 
 static csg_vec3 gradient_of(const mesh_case *m, csg_vec3 p)
@@ -131,17 +132,17 @@ static void try_gradients(const mesh_case *m, csg_random *random, const double c
         csg_vec3 gradient = gradient_of(m, on);
         d = csg_vec3_sub(on, center);
         const double x[3] = {d.x, d.y, d.z}, g[3] = {gradient.x, gradient.y, gradient.z};
-        double promised[3], off = 0, square = csg_vec3_dot(d, d);
+        double promised[3], off = 0, room = turn_at(&f, x);
         if (!(fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))) <= half &&
               fabs(test_sample(m->scene, on).value) < 1e-12))
             continue;
         gradient_at(&f, x, promised);
         for (int k = 0; k < 3; k++)
             off += (g[k] - promised[k]) * (g[k] - promised[k]);
-        if (sqrt(off) > f.turned + f.twice * square + (has_fillets ? 1e-7 : 1e-9))
+        if (sqrt(off) > room + (has_fillets ? 1e-7 : 1e-9))
             fail_msg("seed %" PRIu64 ": a gradient is %g off, %g is promised, in a cube of half %g",
-                     seed, sqrt(off), f.turned + f.twice * square, half);
-        assert_true(f.turned + f.twice * square < 1e-9 + csg_taylor_stray(&f, 2 * half));
+                     seed, sqrt(off), room, half);
+        assert_true(room < 1e-9 + csg_taylor_stray(&f, 2 * half));
         seen->turned++;
     }
 }
@@ -228,66 +229,76 @@ static csg_taylor random_polynomial(csg_random *random, double half)
         f.slope[k] = csg_random_uniform(random, -1, 1);
     for (int n = 0; n < 6; n++)
         f.bend[n] = csg_random_uniform(random, -bent, bent);
+    for (int n = 0; n < 10; n++)
+        f.third[n] = csg_random_uniform(random, -2, 2) * bent * bent;
     return f;
 }
 
-/* How much of the segment from a to b the polynomial is positive on, as a share. */
-static double share_of(const csg_taylor *f, const double a[3], const double b[3])
+/* Where along the axis, in [-half, half], the solid begins and ends; the polynomial rises there or
+ * falls. */
+static void find_ends(const csg_taylor *f, const double at[3], int along, double half,
+                      double ends[2])
 {
-    double x[3], v[3]; /* at 0, 1/2, 1: a parabola */
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++)
-            x[k] = a[k] + 0.5 * i * (b[k] - a[k]);
-        v[i] = polynomial_at(f, x);
+    csg_taylor m = csg_taylor_moved(f, at);
+    double c = m.value, b = m.slope[along], a = 0.5 * m.bend[along], t = m.third[along] / 6;
+    double low = -half, high = half;
+    bool rises = c + (b + (a + t * half) * half) * half > c - (b - (a - t * half) * half) * half;
+    for (int step = 0; step < 40; step++) {
+        double z = 0.5 * (low + high), value = c + (b + (a + t * z) * z) * z;
+        if ((value > 0) == rises)
+            high = z;
+        else
+            low = z;
     }
-    double square = 2 * (v[0] - 2 * v[1] + v[2]), line = v[2] - v[0] - square;
-    double roots[4] = {0, 1, 0, 0}, under = line * line - 4 * square * v[0];
-    if (under > 0) {
-        double q = -0.5 * (line + copysign(sqrt(under), line));
-        roots[2] = fmin(fmax(q / square, 0), 1);
-        roots[3] = fmin(fmax(v[0] / q, 0), 1);
-    }
-    double least = fmin(roots[2], roots[3]), most = fmax(roots[2], roots[3]), sum = 0;
-    const double ends[4] = {0, isfinite(least) ? least : 0, isfinite(most) ? most : 0, 1};
-    for (int i = 0; i < 3; i++) {
-        double t = 0.5 * (ends[i] + ends[i + 1]);
-        if ((square * t + line) * t + v[0] > 0)
-            sum += ends[i + 1] - ends[i];
-    }
-    return sum;
+    ends[0] = rises ? low : -half;
+    ends[1] = rises ? half : low;
 }
 
-/* By columns along an axis; axes: 2 of the cube, 1 of its face. */
-static double columns_of(const csg_taylor *f, double half, int along, int face, double at)
+/* By columns along an axis, of the cube or of its face; out: around the cube's centre, of a face
+ * the first one alone. */
+static void add_columns(const csg_taylor *f, double half, int along, int face, double at,
+                        double out[CSG_INTEGRALS])
 {
     enum { SIDE = 160 };
-    double sum = 0;
     int i = (along + 1) % 3, k = (along + 2) % 3;
+    double share = face < 0 ? 4 * half * half / (SIDE * SIDE) : 2 * half / SIDE;
+    memset(out, 0, CSG_INTEGRALS * sizeof *out);
     for (int a = 0; a < SIDE; a++)
         for (int b = 0; b < (face < 0 ? SIDE : 1); b++) {
-            double from[3], to[3];
-            from[i] = half * ((2 * a + 1.0) / SIDE - 1);
-            from[k] = half * ((2 * b + 1.0) / SIDE - 1);
+            double x[3] = {0}, ends[2], middle[3], length, rest;
+            x[i] = half * ((2 * a + 1.0) / SIDE - 1);
+            x[k] = half * ((2 * b + 1.0) / SIDE - 1);
             if (face >= 0) {
-                from[face == i ? k : i] = half * ((2 * a + 1.0) / SIDE - 1);
-                from[face] = at;
+                x[face == i ? k : i] = half * ((2 * a + 1.0) / SIDE - 1);
+                x[face] = at;
             }
-            from[along] = -half;
-            to[i] = from[i];
-            to[k] = from[k];
-            to[along] = half;
-            sum += share_of(f, from, to) / (face < 0 ? SIDE * SIDE : SIDE);
+            find_ends(f, x, along, half, ends);
+            length = share * (ends[1] - ends[0]);
+            memcpy(middle, x, sizeof middle);
+            middle[along] = 0.5 * (ends[0] + ends[1]);
+            rest = (ends[1] - ends[0]) * (ends[1] - ends[0]) / 12;
+            out[CSG_INTEGRAL_ONE] += length;
+            for (int n = 0; n < 3; n++) {
+                out[CSG_INTEGRAL_X + n] += length * middle[n];
+                out[CSG_INTEGRAL_XX + n] +=
+                    length * (middle[n] * middle[n] + (n == along ? rest : 0));
+            }
+            out[CSG_INTEGRAL_XY] += length * middle[0] * middle[1];
+            out[CSG_INTEGRAL_XZ] += length * middle[0] * middle[2];
+            out[CSG_INTEGRAL_YZ] += length * middle[1] * middle[2];
         }
-    return sum * (face < 0 ? 8 * half * half * half : 4 * half * half);
 }
 
-/* The integral over the surface in the cube of 1 - the cosine with the plane's normal. */
-static double excess_of(const csg_taylor *f, double half, int along)
+/* The integral over the surface in the cube of 1 - the cosine with the plane's normal. *off: what
+ * columns may miss of it. */
+static double excess_of(const csg_taylor *f, double half, int along, double *off)
 {
     enum { SIDE = 160 };
     int i = (along + 1) % 3, k = (along + 2) % 3;
-    double sum = 0, slope = sqrt(f->slope[0] * f->slope[0] + f->slope[1] * f->slope[1] +
-                                 f->slope[2] * f->slope[2]);
+    int cut = 0;
+    double sum = 0, most = 0,
+           slope = sqrt(f->slope[0] * f->slope[0] + f->slope[1] * f->slope[1] +
+                        f->slope[2] * f->slope[2]);
     for (int n = 0; n < SIDE * SIDE; n++) {
         double x[3], g[3], length = 0, with = 0;
         x[i] = half * ((2 * (n % SIDE) + 1.0) / SIDE - 1);
@@ -297,15 +308,20 @@ static double excess_of(const csg_taylor *f, double half, int along)
             gradient_at(f, x, g);
             x[along] -= polynomial_at(f, x) / g[along];
         }
-        if (!(fabs(x[along]) < half && fabs(polynomial_at(f, x)) < 1e-9 * half))
+        if (!(fabs(x[along]) < half && fabs(polynomial_at(f, x)) < 1e-9 * half)) {
+            cut++;
             continue;
+        }
         gradient_at(f, x, g);
         for (int a = 0; a < 3; a++) {
             length += g[a] * g[a];
             with += g[a] * f->slope[a] / slope;
         }
-        sum += (sqrt(length) - with) / fabs(g[along]);
+        double here = (sqrt(length) - with) / fabs(g[along]);
+        most = fmax(most, here);
+        sum += here;
     }
+    *off = (1e-4 * sum + (cut ? 0.15 * SIDE * most : 0)) * 4 * half * half / (SIDE * SIDE);
     return sum * 4 * half * half / (SIDE * SIDE);
 }
 
@@ -317,43 +333,146 @@ static int steepest_but(const csg_taylor *f, int but)
     return up;
 }
 
+/* Of the solid through the cube's faces along the plane's normal; *off: as much. */
+static bool find_flow(const csg_taylor *f, double half, double *flow, double *off)
+{
+    double slope = sqrt(square_of(f->slope));
+    *flow = *off = 0;
+    for (int i = 0; i < 6; i++) {
+        double area, error, share = f->slope[i / 2] / slope;
+        if (!csg_graph_face(f, half, i / 2, i & 1 ? 1 : -1, &area, &error))
+            return false;
+        *flow += (i & 1 ? share : -share) * area;
+        *off += fabs(share) * error;
+    }
+    return true;
+}
+
+/* Between these the surface's area in the cube is; SIDE^3 parts of it, or 1. */
+static bool find_area(const csg_taylor *f, double half, int side, double between[2])
+{
+    double small = half / side;
+    between[0] = between[1] = 0;
+    for (int i = 0; i < side * side * side; i++) {
+        const double c[3] = {small * (2 * (i % side) + 1 - side),
+                             small * (2 * (i / side % side) + 1 - side),
+                             small * (2 * (i / side / side) + 1 - side)};
+        double flow, off, least, most;
+        csg_taylor moved = csg_taylor_moved(f, c);
+        if (!csg_graph_excess(&moved, small, &least, &most) ||
+            !find_flow(&moved, small, &flow, &off))
+            return false;
+        between[0] += flow - off + least;
+        between[1] += flow + off + most;
+    }
+    return true;
+}
+
+typedef struct graph_tally {
+    uint32_t known, faces, tight, narrow, close, divided, areas;
+} graph_tally;
+
+/* The same of SIDE^3 parts of the cube, which err by some thousandth of that: they do not differ by
+ * more than both. */
+static void try_parts(const csg_taylor *f, double half, const csg_graph *whole, graph_tally *seen)
+{
+    enum { SIDE = 8 };
+    csg_graph sum = {.error = 0};
+    double small = half / SIDE;
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+        const int of[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        double c[3];
+        csg_graph part;
+        for (int k = 0; k < 3; k++)
+            c[k] = small * (2 * of[k] + 1 - SIDE);
+        csg_taylor moved = csg_taylor_moved(f, c);
+        if (!csg_graph_find(&moved, small, &part))
+            return;
+        csg_integrals_shift(part.integrals, c);
+        for (int n = 0; n < CSG_INTEGRALS; n++)
+            sum.integrals[n] += part.integrals[n];
+        sum.error += part.error;
+        sum.first += part.first + half * part.error;
+        sum.second += part.second + half * (2 * part.first + half * part.error);
+    }
+    for (int n = 0; n < CSG_INTEGRALS; n++) {
+        bool is_first = n >= CSG_INTEGRAL_X, is_second = n >= CSG_INTEGRAL_XX;
+        double scale = half * half * half * (is_second ? half * half : is_first ? half : 1);
+        double room = is_second  ? whole->second + sum.second
+                      : is_first ? whole->first + sum.first
+                                 : whole->error + sum.error;
+        double off = fabs(whole->integrals[n] - sum.integrals[n]);
+        if (off > room + 1e-12 * scale)
+            fail_msg("seed %" PRIu64 ": integral %d is %g off that of parts, %g promised, of %g",
+                     seed, n, off, room, scale);
+    }
+    seen->divided++;
+}
+
+static void try_area_of_parts(const csg_taylor *f, double half, graph_tally *seen)
+{
+    double whole[2], parts[2], room = 1e-12 * half * half;
+    if (!find_area(f, half, 1, whole) || !find_area(f, half, 8, parts))
+        return;
+    if (whole[0] > parts[1] + room || parts[0] > whole[1] + room)
+        fail_msg("seed %" PRIu64 ": an area of %.12g to %.12g is %.12g to %.12g by parts", seed,
+                 whole[0], whole[1], parts[0], parts[1]);
+    seen->areas++;
+}
+
+static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
+{
+    double whole = 8 * half * half * half, wanted[CSG_INTEGRALS], least, most;
+    csg_graph graph;
+    if (!csg_graph_find(f, half, &graph))
+        return;
+    int up = steepest_but(f, -1);
+    add_columns(f, half, up, -1, 0, wanted);
+    for (int n = 0; n < CSG_INTEGRALS; n++) {
+        bool is_first = n >= CSG_INTEGRAL_X, is_second = n >= CSG_INTEGRAL_XX;
+        double scale = whole * (is_second ? half * half : is_first ? half : 1);
+        double room = is_second ? graph.second : is_first ? graph.first : graph.error;
+        double off = fabs(graph.integrals[n] - wanted[n]);
+        if (off > room + 2e-5 * scale)
+            fail_msg("seed %" PRIu64 ": integral %d is %g off, %g promised, of %g", seed, n, off,
+                     room, scale);
+    }
+    try_parts(f, half, &graph, seen);
+    try_area_of_parts(f, half, seen);
+    double off, excess = excess_of(f, half, up, &off);
+    assert_true(csg_graph_excess(f, half, &least, &most));
+    off += 1e-9 * half * half;
+    if (excess > most + off || excess < least - off)
+        fail_msg("seed %" PRIu64 ": an area's excess of %g, %g to %g promised", seed, excess, least,
+                 most);
+    seen->known++;
+    seen->narrow += most - least < 0.2 * most;
+    seen->tight += graph.error < 1e-3 * whole;
+    seen->close += graph.first < 2e-3 * whole * half;
+}
+
 static void graphs_hold(void **state)
 {
-    uint32_t known = 0, faces = 0, tight = 0, narrow = 0;
+    graph_tally seen = {0};
     for (uint64_t i = 0; i < 500 * test_times; i++) {
-        csg_random random = {.state = 35000 + test_first_seed + i};
+        csg_random random = {.state = seed = 35000 + test_first_seed + i};
         double half = exp(csg_random_uniform(&random, -3, 3)), area, error;
         csg_taylor f = random_polynomial(&random, half);
-        csg_graph graph;
-        if (csg_graph_find(&f, half, &graph)) {
-            double whole = 8 * half * half * half;
-            double wanted = columns_of(&f, half, steepest_but(&f, -1), -1, 0);
-            double off = fabs(graph.volume - wanted), moved = wanted - graph.plane[0];
-            if (off > graph.error + 2e-5 * whole)
-                fail_msg("seed %d: %g off, %g promised, of %g", (int)i, off, graph.error, whole);
-            assert_true(moved <= graph.gained + 2e-5 * whole);
-            assert_true(moved >= -graph.lost - 2e-5 * whole);
-            double excess = excess_of(&f, half, steepest_but(&f, -1)), least, most;
-            assert_true(csg_graph_excess(&f, half, &least, &most));
-            if (excess > most + 1e-4 * half * half || excess < least - 1e-4 * half * half)
-                fail_msg("seed %d: an area's excess of %g, %g to %g promised", (int)i, excess,
-                         least, most);
-            narrow += most - least < 0.2 * most;
-            tight += graph.error < 1e-3 * whole;
-            known++;
-        }
+        try_solid(&f, half, &seen);
         int axis = (int)(i % 3), side = i % 2 ? 1 : -1;
         if (csg_graph_face(&f, half, axis, side, &area, &error)) {
-            csg_taylor moved = f;
-            double wanted = columns_of(&moved, half, steepest_but(&f, axis), axis, side * half);
-            if (fabs(area - wanted) > error + 1e-3 * half * half)
-                fail_msg("seed %d: a face's area %g for %g, %g promised", (int)i, area, wanted,
-                         error);
-            faces++;
+            double wanted[CSG_INTEGRALS];
+            add_columns(&f, half, steepest_but(&f, axis), axis, side * half, wanted);
+            if (fabs(area - wanted[0]) > error + 1e-3 * half * half)
+                fail_msg("seed %" PRIu64 ": a face's area %g for %g, %g promised", seed, area,
+                         wanted[0], error);
+            seen.faces++;
         }
     }
-    assert_true(known > 300 * test_times && tight > 200 * test_times);
-    assert_true(faces > 250 * test_times && narrow > 20 * test_times);
+    assert_true(seen.known > 300 * test_times && seen.tight > 250 * test_times);
+    assert_true(seen.faces > 300 * test_times && seen.narrow > 140 * test_times);
+    assert_true(seen.areas > 250 * test_times && seen.close > 250 * test_times &&
+                seen.divided > 300 * test_times);
 }
 
 int main(int argc, char **argv)

@@ -94,7 +94,7 @@ static bool find_leaf(const walker *w, const csg_tape_node *leaf, operand *o)
     o->piece.f.error += rounding_of(w, parameters);
     o->piece.f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
     o->has_slopes = w->with_slopes;
-    return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.cubic);
+    return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.quartic);
 }
 
 /* ---- operators of two --------------------------------------------------------------------------
@@ -562,5 +562,5 @@ bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg
     if (!walk(&w))
         return false;
     *out = w.stack[0].piece.f;
-    return isfinite(out->value + out->error + out->cubic);
+    return isfinite(out->value + out->error + out->quartic);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A tape's field in a ball as one Taylor model of second order (base/taylor.h), where the field is
+ * A tape's field in a ball as one Taylor model of third order (base/taylor.h), where the field is
  * smooth there: its leaves by their smooth pieces (scene/primitives/smooth.h), its blends as
  * functions of these.
  */

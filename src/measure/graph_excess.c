@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ * The area of a graph beside its flow; see graph.h.
+ */
+#include "measure/graph.h"
+
+#include <math.h>
+
+#include "measure/graph_patch.h"
+
+/* The plane's gradient over the face; of A(p) = sqrt(1 + p^2) there its value. */
+typedef struct level {
+    double p[2], whole;
+} level;
+
+/* With p the surface's gradient over the face and p_0 the plane's, the area of a piece of the
+ * surface is the integral of A(p), and what flows through it along the plane's normal that of its
+ * tangent at p_0: with d = p - p_0 and c = p_0 . d / A(p_0), A - A_0 - c is
+ * (d^2 - c^2) / (A + A_0 + c). */
+static double excess_at(const csg_graph_patch *q, const level *l, const double at[2])
+{
+    double x = at[0], y = at[1], d[2];
+    d[0] =
+        q->g[0] - l->p[0] +
+        (q->bend[CSG_GRAPH_XX] + 0.5 * q->third[CSG_GRAPH_XXX] * x + q->third[CSG_GRAPH_XXY] * y) *
+            x +
+        (q->bend[CSG_GRAPH_XY] + 0.5 * q->third[CSG_GRAPH_XYY] * y) * y;
+    d[1] =
+        q->g[1] - l->p[1] +
+        (q->bend[CSG_GRAPH_YY] + 0.5 * q->third[CSG_GRAPH_YYY] * y + q->third[CSG_GRAPH_XYY] * x) *
+            y +
+        (q->bend[CSG_GRAPH_XY] + 0.5 * q->third[CSG_GRAPH_XXY] * x) * x;
+    double p = l->p[0] + d[0], r = l->p[1] + d[1];
+    double c = (l->p[0] * d[0] + l->p[1] * d[1]) / l->whole, square = d[0] * d[0] + d[1] * d[1];
+    return (square - c * c) / (sqrt(1 + p * p + r * r) + l->whole + c);
+}
+
+/* How the gradient turns over the patch: at most along each axis and how that changes; from p_0. */
+typedef struct tilt {
+    double turn[2], change[2], all;
+    double most; /* |p - p_0| */
+} tilt;
+
+static tilt tilt_of(const csg_graph_patch *q, const level *l)
+{
+    const double *b = q->bend, *t = q->third, x = q->half[0], y = q->half[1];
+    const double bend[2][2] = {{b[CSG_GRAPH_XX], b[CSG_GRAPH_XY]},
+                               {b[CSG_GRAPH_XY], b[CSG_GRAPH_YY]}};
+    const double third[2][2][2] = {
+        {{t[CSG_GRAPH_XXX], t[CSG_GRAPH_XXY]}, {t[CSG_GRAPH_XXY], t[CSG_GRAPH_XYY]}},
+        {{t[CSG_GRAPH_XXY], t[CSG_GRAPH_XYY]}, {t[CSG_GRAPH_XYY], t[CSG_GRAPH_YYY]}}};
+    tilt out = {.most = sqrt((q->g[0] - l->p[0]) * (q->g[0] - l->p[0]) +
+                             (q->g[1] - l->p[1]) * (q->g[1] - l->p[1]))};
+    for (int i = 0; i < 2; i++) {
+        double square = 0;
+        for (int k = 0; k < 2; k++) {
+            double most = fabs(bend[i][k]) + fabs(third[i][k][0]) * x + fabs(third[i][k][1]) * y;
+            square += most * most;
+        }
+        out.turn[i] = sqrt(square);
+        out.change[i] = sqrt(third[i][i][0] * third[i][i][0] + third[i][i][1] * third[i][i][1]);
+        out.most += out.turn[i] * q->half[i];
+    }
+    out.all = sqrt(t[CSG_GRAPH_XXX] * t[CSG_GRAPH_XXX] +
+                   3 * (t[CSG_GRAPH_XXY] * t[CSG_GRAPH_XXY] + t[CSG_GRAPH_XYY] * t[CSG_GRAPH_XYY]) +
+                   t[CSG_GRAPH_YYY] * t[CSG_GRAPH_YYY]);
+    return out;
+}
+
+/* A's second, third and fourth derivatives are no more than 1, 0.859 and 3. */
+static const double A_THIRD = 0.859, A_FOURTH = 3;
+
+/* By the rule of Gauss with two points along either axis, which errs by h^4 / 270 times the fourth
+ * derivative along it. */
+static double excess_of_whole(const csg_graph_patch *q, const level *l, const tilt *t, double *open)
+{
+    static const double POINT = 0.57735026918962576; /* sqrt(1/3) */
+    double area = csg_graph_patch_area(q), sum = 0;
+    for (int i = 0; i < 4; i++) {
+        const double at[2] = {(i & 1 ? POINT : -POINT) * q->half[0],
+                              (i & 2 ? POINT : -POINT) * q->half[1]};
+        sum += 0.25 * area * excess_at(q, l, at);
+    }
+    for (int i = 0; i < 2; i++) {
+        double h = q->half[i] * q->half[i], n = t->turn[i] * t->turn[i], c = t->change[i];
+        *open += area * h * h / 270 * (A_FOURTH * n * n + 6 * A_THIRD * n * c + 3 * c * c);
+    }
+    return sum;
+}
+
+/* Where the linear part is above `value`. By the middles of edges, which is right up to second
+ * order. */
+static double excess_of_part(const csg_graph_patch *q, const level *l, double value)
+{
+    double polygon[CSG_GRAPH_CLIPPED][2], sum = 0;
+    int count = csg_graph_patch_clip(q, value, polygon);
+    for (int i = 1; i + 1 < count; i++) {
+        const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
+        double area = csg_graph_patch_triangle(t[0], t[1], t[2]);
+        for (int n = 0; n < 3; n++) {
+            const double *a = t[n], *b = t[(n + 1) % 3];
+            const double middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+            sum += area / 3 * excess_at(q, l, middle);
+        }
+    }
+    return sum;
+}
+
+/* What is open of a patch that is cut: it is taken for that of the linear part but for strips on
+ * its sides. */
+static double excess_of_cut(const csg_graph_base *g, const csg_graph_patch *q, const level *l,
+                            const tilt *t, double beyond, double *touched, double *open)
+{
+    double far = q->half[0] * q->half[0] + q->half[1] * q->half[1], h = g->half;
+    double n = sqrt(t->turn[0] * t->turn[0] + t->turn[1] * t->turn[1]);
+    *touched = csg_graph_patch_shown(g, q, beyond);
+    double strips = *touched - csg_graph_patch_shown(g, q, -beyond);
+    *open = *touched / 3 * far * sqrt(far) * (A_THIRD * n * n * n + 3 * n * t->all);
+    *open += 0.5 * t->most * t->most * strips;
+    return excess_of_part(q, l, q->z + h) - excess_of_part(q, l, q->z - h);
+}
+
+/* Over what the patch shows of the surface. enough: what may be left open for its being cut. */
+static void add_excess(const csg_graph_base *g, const csg_graph_patch *q, const level *l,
+                       const csg_graph_room *off, double enough, int more, double sums[2])
+{
+    double bends = csg_graph_patch_bend(q) + csg_graph_patch_third(q), beyond = bends + off->most,
+           reach = csg_graph_patch_line(q) + beyond;
+    double h = g->half, touched = csg_graph_patch_area(q), open = 0, sum;
+    if (q->z + reach <= -h || q->z - reach >= h)
+        return;
+    const tilt t = tilt_of(q, l);
+    if (csg_graph_patch_is_whole(g, q, off->most))
+        sum = excess_of_whole(q, l, &t, &open);
+    else
+        sum = excess_of_cut(g, q, l, &t, beyond, &touched, &open);
+    if (open > enough && more) {
+        int axis = csg_graph_patch_bent_axis(q);
+        for (int side = -1; side <= 1; side += 2) {
+            csg_graph_patch half = csg_graph_patch_half(q, axis, side);
+            add_excess(g, &half, l, off, 0.5 * enough, more - 1, sums);
+        }
+        return;
+    }
+    double all = t.most + off->turned;
+    open += touched * all * off->turned;
+    sums[0] += fmax(sum - open, 0);
+    sums[1] += fmin(sum + open, 0.5 * touched * all * all);
+}
+
+bool csg_graph_excess(const csg_taylor *f, double half, double *least, double *most)
+{
+    double sums[2] = {0};
+    csg_graph_base g;
+    if (!csg_graph_patch_begin(&g, f, half))
+        return false;
+    double steep = fabs(g.p.slope[2]);
+    level l = {.p = {g.p.slope[0] / steep, g.p.slope[1] / steep}};
+    l.whole = sqrt(1 + l.p[0] * l.p[0] + l.p[1] * l.p[1]);
+    for (int i = 0; i < CSG_GRAPH_SIDE * CSG_GRAPH_SIDE; i++) {
+        csg_graph_patch q = csg_graph_patch_first(&g, i);
+        csg_graph_room off;
+        csg_graph_columns of = csg_graph_patch_place(&g, &q, &off);
+        if (of == CSG_COLUMNS_UNKNOWN)
+            return false;
+        if (of == CSG_COLUMNS_CROSSED) {
+            double enough =
+                CSG_GRAPH_SHARE * csg_graph_patch_area(&q) * tilt_of(&q, &l).most * off.turned;
+            add_excess(&g, &q, &l, &off, enough, CSG_GRAPH_HALVED, sums);
+        }
+    }
+    *least = sums[0] * (1 - 1e-9);
+    *most = sums[1] * (1 + 1e-9);
+    return isfinite(*most);
+}

@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: MIT
+ * Patches; see graph_patch.h.
+ */
+#include "measure/graph_patch.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Half edges from the cube's centre, up to which roots are looked for. */
+static const double REACH = 3.5;
+
+enum { CORNERS = 4 };
+
+static void order_axes(csg_graph_base *g)
+{
+    const csg_taylor *f = g->f;
+    csg_taylor *p = &g->p;
+    int up = 0;
+    for (int k = 1; k < 3; k++)
+        up = fabs(f->slope[k]) > fabs(f->slope[up]) ? k : up;
+    g->turn = f->slope[up] > 0 ? -1 : 1;
+    for (int i = 0; i < 3; i++)
+        g->axes[i] = (up + 1 + i) % 3;
+    const double sign[3] = {1, 1, g->turn};
+    const int *axes = g->axes;
+    p->value = f->value;
+    for (int i = 0; i < 3; i++) {
+        p->slope[i] = sign[i] * f->slope[axes[i]];
+        for (int j = i; j < 3; j++) {
+            p->bend[csg_taylor_second[i][j]] =
+                sign[i] * sign[j] * f->bend[csg_taylor_second[axes[i]][axes[j]]];
+            for (int k = j; k < 3; k++)
+                p->third[csg_taylor_third[i][j][k]] =
+                    sign[i] * sign[j] * sign[k] *
+                    f->third[csg_taylor_third[axes[i]][axes[j]][axes[k]]];
+        }
+    }
+}
+
+/* With bounds over the cube and up to REACH: of the gradient's parts, of the Hessian H, of its last
+ * row and of the third derivatives T. Along a unit vector u of the face, with q the tangent's
+ * length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall and
+ * |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall. False: F may not fall. */
+static bool find_fall(csg_graph_base *g)
+{
+    static const double LEAST = 0.25;
+    const csg_taylor *p = &g->p;
+    const double wide[3] = {g->half, g->half, REACH * g->half};
+    double bend[3][3], gradient = 0, row = 0, all = 0, third = 0, change[3];
+    for (int i = 0; i < 3; i++) {
+        change[i] = 0;
+        for (int j = 0; j < 3; j++) {
+            double turned = 0, own = fabs(p->bend[csg_taylor_second[i][j]]);
+            for (int k = 0; k < 3; k++) {
+                double t = fabs(p->third[csg_taylor_third[i][j][k]]);
+                turned += t * wide[k];
+                third += t * t;
+            }
+            change[i] += (own + 0.5 * turned) * wide[j];
+            bend[i][j] = own + turned;
+            all += bend[i][j] * bend[i][j];
+        }
+    }
+    double steep = fabs(p->slope[2]);
+    g->fall = steep - change[2];
+    if (!(g->fall > LEAST * steep))
+        return false;
+    for (int i = 0; i < 2; i++)
+        gradient += (fabs(p->slope[i]) + change[i]) * (fabs(p->slope[i]) + change[i]);
+    for (int i = 0; i < 3; i++)
+        row += bend[2][i] * bend[2][i];
+    double q = sqrt(1 + gradient / (g->fall * g->fall)), fall = g->fall;
+    g->tangent = q;
+    g->bent = sqrt(all);
+    row = sqrt(row);
+    third = sqrt(third);
+    double z2 = g->bent * q * q / fall, z3 = (third * q * q * q + 3 * row * q * z2) / fall;
+    double z4 = (6 * third * q * q * z2 + 3 * bend[2][2] * z2 * z2 + 4 * row * q * z3) / fall;
+    g->fourth = z4 / 24;
+    return isfinite(z4);
+}
+
+/* Over the patch at this height: 1, F is more than `room` all over; -1, less than -room; else 0. */
+static int sign_at(const csg_graph_base *g, const csg_graph_patch *q, double z)
+{
+    const double at[3] = {q->at[0], q->at[1], z};
+    const csg_taylor p = csg_taylor_moved(&g->p, at);
+    double reach = g->room;
+    for (int i = 0; i < 2; i++) {
+        reach += fabs(p.slope[i]) * q->half[i];
+        for (int j = 0; j < 2; j++) {
+            reach += 0.5 * fabs(p.bend[csg_taylor_second[i][j]]) * q->half[i] * q->half[j];
+            for (int k = 0; k < 2; k++)
+                reach += fabs(p.third[csg_taylor_third[i][j][k]]) / 6 * q->half[i] * q->half[j] *
+                         q->half[k];
+        }
+    }
+    return p.value > reach ? 1 : p.value < -reach ? -1 : 0;
+}
+
+/* T(w_i, w_j, w_k), w being the tangents (1, 0, g_0), (0, 1, g_1). */
+static double third_along(const csg_taylor *p, const double g[2], int i, int j, int k)
+{
+    const int of[3] = {i, j, k};
+    double sum = 0;
+    for (int up = 0; up < 8; up++) { /* bits: which ones go along z */
+        double share = 1;
+        int axes[3];
+        for (int n = 0; n < 3; n++) {
+            axes[n] = up >> n & 1 ? 2 : of[n];
+            share *= up >> n & 1 ? g[of[n]] : 1;
+        }
+        sum += share * p->third[csg_taylor_third[axes[0]][axes[1]][axes[2]]];
+    }
+    return sum;
+}
+
+/* The derivatives of the implicit function where F is p. */
+static void find_derivatives(const csg_taylor *p, csg_graph_patch *q)
+{
+    static const int OF[4][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    const double *b = p->bend;
+    double down = p->slope[2], zz = b[csg_taylor_second[2][2]], across[2], second[2][2];
+    for (int i = 0; i < 2; i++)
+        q->g[i] = -p->slope[i] / down;
+    for (int i = 0; i < 2; i++)
+        across[i] = b[csg_taylor_second[i][2]] + zz * q->g[i];
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2; k++)
+            second[i][k] = -(b[csg_taylor_second[i][k]] + b[csg_taylor_second[i][2]] * q->g[k] +
+                             across[k] * q->g[i]) /
+                           down;
+    q->bend[CSG_GRAPH_XX] = second[0][0];
+    q->bend[CSG_GRAPH_YY] = second[1][1];
+    q->bend[CSG_GRAPH_XY] = second[0][1];
+    for (int n = 0; n < 4; n++) {
+        int i = OF[n][0], j = OF[n][1], k = OF[n][2];
+        q->third[n] = -(third_along(p, q->g, i, j, k) + second[i][j] * across[k] +
+                        second[i][k] * across[j] + second[j][k] * across[i]) /
+                      down;
+    }
+}
+
+/* The implicit function at the patch's middle. False: its root is too far. *off: of the height. */
+static bool expand(const csg_graph_base *g, csg_graph_patch *q, double *off)
+{
+    enum { STEPS = 3 };
+    const double at[3] = {q->at[0], q->at[1], 0};
+    csg_taylor p = csg_taylor_moved(&g->p, at);
+    double a = p.bend[csg_taylor_second[2][2]], b = p.slope[2], c = p.value;
+    double t = p.third[csg_taylor_third[2][2][2]], under = b * b - 2 * a * c;
+    if (!(under > 0))
+        return false;
+    double z = 2 * c / (sqrt(under) - b), rest = 0; /* b < 0 */
+    for (int n = 0; n <= STEPS; n++) {
+        rest = c + (b + (0.5 * a + t / 6 * z) * z) * z;
+        z -= n < STEPS ? rest / (b + (a + 0.5 * t * z) * z) : 0;
+    }
+    q->z = z;
+    *off = fabs(rest) / g->fall;
+    if (!(fabs(z) < REACH * g->half) || !(*off < 1e-6 * g->half))
+        return false;
+    const double up[3] = {0, 0, z};
+    p = csg_taylor_moved(&p, up);
+    find_derivatives(&p, q);
+    return true;
+}
+
+/* ---- parts of a patch --------------------------------------------------------------------------
+ */
+
+double csg_graph_patch_area(const csg_graph_patch *q)
+{
+    return 4 * q->half[0] * q->half[1];
+}
+
+/* How far the polynomial's parts reach. */
+double csg_graph_patch_line(const csg_graph_patch *q)
+{
+    return fabs(q->g[0]) * q->half[0] + fabs(q->g[1]) * q->half[1];
+}
+
+double csg_graph_patch_bend(const csg_graph_patch *q)
+{
+    double x = q->half[0], y = q->half[1];
+    return (0.5 * (fabs(q->bend[CSG_GRAPH_XX]) * x * x + fabs(q->bend[CSG_GRAPH_YY]) * y * y) +
+            fabs(q->bend[CSG_GRAPH_XY]) * x * y) *
+           (1 + 1e-12);
+}
+
+double csg_graph_patch_third(const csg_graph_patch *q)
+{
+    double x = q->half[0], y = q->half[1];
+    return ((fabs(q->third[CSG_GRAPH_XXX]) * x + 3 * fabs(q->third[CSG_GRAPH_XXY]) * y) * x * x +
+            (fabs(q->third[CSG_GRAPH_YYY]) * y + 3 * fabs(q->third[CSG_GRAPH_XYY]) * x) * y * y) /
+           6 * (1 + 1e-12);
+}
+
+static double line_at(const csg_graph_patch *q, double value, const double at[2])
+{
+    return value + q->g[0] * at[0] + q->g[1] * at[1];
+}
+
+static double bend_at(const csg_graph_patch *q, const double at[2])
+{
+    return 0.5 * (q->bend[CSG_GRAPH_XX] * at[0] * at[0] + q->bend[CSG_GRAPH_YY] * at[1] * at[1]) +
+           q->bend[CSG_GRAPH_XY] * at[0] * at[1];
+}
+
+/* Of one half of it, along that axis. */
+csg_graph_patch csg_graph_patch_half(const csg_graph_patch *q, int axis, int side)
+{
+    static const int THIRD[2][3] = {
+        {CSG_GRAPH_XXX, CSG_GRAPH_XXY, CSG_GRAPH_XYY},
+        {CSG_GRAPH_YYY, CSG_GRAPH_XYY, CSG_GRAPH_XXY}}; /* by how often across */
+    static const int SECOND[2][3] = {{CSG_GRAPH_XX, CSG_GRAPH_XY, CSG_GRAPH_YY},
+                                     {CSG_GRAPH_YY, CSG_GRAPH_XY, CSG_GRAPH_XX}};
+    const int *third = THIRD[axis], *second = SECOND[axis];
+    double d = side * 0.5 * q->half[axis];
+    csg_graph_patch out = *q;
+    out.half[axis] *= 0.5;
+    out.at[axis] += d;
+    out.z += (q->g[axis] + (0.5 * q->bend[second[0]] + q->third[third[0]] / 6 * d) * d) * d;
+    out.g[axis] += (q->bend[second[0]] + 0.5 * q->third[third[0]] * d) * d;
+    out.g[1 - axis] += (q->bend[second[1]] + 0.5 * q->third[third[1]] * d) * d;
+    for (int n = 0; n < 3; n++)
+        out.bend[second[n]] += q->third[third[n]] * d;
+    return out;
+}
+
+/* The axis along which it bends more. */
+int csg_graph_patch_bent_axis(const csg_graph_patch *q)
+{
+    double across = fabs(q->bend[CSG_GRAPH_XY]) * q->half[0] * q->half[1];
+    double x = fabs(q->bend[CSG_GRAPH_XX]) * q->half[0] * q->half[0];
+    double y = fabs(q->bend[CSG_GRAPH_YY]) * q->half[1] * q->half[1];
+    return x == y && across > x ? q->half[1] > q->half[0] : y > x;
+}
+
+/* Where value + g . d > 0. Returns its corners. */
+int csg_graph_patch_clip(const csg_graph_patch *q, double value,
+                         double polygon[CSG_GRAPH_CLIPPED][2])
+{
+    static const int SIGN[CORNERS][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    double values[CORNERS], corners[CORNERS][2];
+    int count = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        for (int k = 0; k < 2; k++)
+            corners[i][k] = SIGN[i][k] * q->half[k];
+        values[i] = line_at(q, value, corners[i]);
+    }
+    for (int i = 0; i < CORNERS; i++) {
+        const double *from = corners[i], *to = corners[(i + 1) % CORNERS];
+        double a = values[i], b = values[(i + 1) % CORNERS], share = a / (a - b);
+        if (a > 0 && count < CSG_GRAPH_CLIPPED)
+            memcpy(polygon[count++], from, sizeof polygon[0]);
+        if ((a > 0) == (b > 0) || count >= CSG_GRAPH_CLIPPED)
+            continue;
+        for (int k = 0; k < 2; k++)
+            polygon[count][k] = from[k] + share * (to[k] - from[k]);
+        count++;
+    }
+    return count;
+}
+
+double csg_graph_patch_triangle(const double *a, const double *b, const double *c)
+{
+    return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+}
+
+csg_graph_part csg_graph_patch_find_part(const csg_graph_patch *q, double value)
+{
+    double polygon[CSG_GRAPH_CLIPPED][2];
+    int count = csg_graph_patch_clip(q, value, polygon);
+    csg_graph_part sum = {0};
+    for (int i = 1; i + 1 < count; i++) {
+        const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
+        double area = csg_graph_patch_triangle(t[0], t[1], t[2]);
+        sum.area += area;
+        for (int n = 0; n < 3; n++) {
+            const double *a = t[n], *b = t[(n + 1) % 3];
+            const double middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+            double line = line_at(q, value, middle);
+            sum.line += area / 3 * line;
+            sum.bent += area / 3 * (line + bend_at(q, middle));
+        }
+    }
+    return sum;
+}
+
+/* The integral of max(z - level, 0), and what is open of it: with a the linear part, b the bends
+ * and t more, max(a + b + t, 0) is max(a, 0) + b [a > 0] but for t and for max(|b| - |a|, 0), whose
+ * integral is that of a tent. */
+double csg_graph_patch_above(const csg_graph_patch *q, double level, double *open)
+{
+    double value = q->z - level, line = csg_graph_patch_line(q), bend = csg_graph_patch_bend(q),
+           third = csg_graph_patch_third(q);
+    double reach = bend + third, x = q->half[0], y = q->half[1];
+    if (value + line + reach <= 0)
+        return 0;
+    if (value - line - reach >= 0)
+        return csg_graph_patch_area(q) *
+               (value + (q->bend[CSG_GRAPH_XX] * x * x + q->bend[CSG_GRAPH_YY] * y * y) / 6);
+    csg_graph_part here = csg_graph_patch_find_part(q, value),
+                   more = csg_graph_patch_find_part(q, value + reach),
+                   less = csg_graph_patch_find_part(q, value - reach);
+    *open += fmax(more.line - 2 * here.line + less.line, 0) + third * more.area;
+    return here.bent;
+}
+
+/* Where the surface may be in the cube, at most; and where it is for certain, at least: `beyond` is
+ * negative then. */
+double csg_graph_patch_shown(const csg_graph_base *g, const csg_graph_patch *q, double beyond)
+{
+    double up = g->half + beyond;
+    return fmax(csg_graph_patch_find_part(q, q->z + up).area -
+                    csg_graph_patch_find_part(q, q->z - up).area,
+                0);
+}
+
+/* All of it is seen in the cube, up to `more`. */
+bool csg_graph_patch_is_whole(const csg_graph_base *g, const csg_graph_patch *q, double more)
+{
+    double reach =
+        csg_graph_patch_line(q) + csg_graph_patch_bend(q) + csg_graph_patch_third(q) + more;
+    return q->z - reach > -g->half && q->z + reach < g->half;
+}
+
+/* ---- what columns are --------------------------------------------------------------------------
+ */
+
+/* How far the surface may be from one of the first patches: by the fourth derivatives, and by what
+ * the model is off. Where that is less than half of the polynomial's own farthest root all over the
+ * cube, no root of the field is farther than half as far again, and what the model is off there
+ * counts alone. Means over a square: |x|^4 is no more than its largest square times the mean of
+ * |x|^2; that of |d|^4 is 0.6223 half^4. p = -(f_x, f_y) / f_z is off by (1 + |p|) times what the
+ * field's gradient is, over f_z; as much as the surface's place makes of the bends; and by the
+ * fourth derivatives. False: the polynomial may leave the region where its derivatives are bounded.
+ */
+static bool find_room(const csg_graph_base *g, const csg_graph_patch *q, double off,
+                      csg_graph_room *out)
+{
+    static const double MEAN = 0.6223, MOST = 4, MOST_CUBE = 2.8285;
+    const csg_taylor *f = g->f;
+    double h = q->half[0], whole = g->fourth * h * h * h * h;
+    double far = fabs(q->z) + csg_graph_patch_line(q) + csg_graph_patch_bend(q) +
+                 csg_graph_patch_third(q) + MOST * whole + off;
+    double z = g->room < 0.5 * far * g->fall ? fmin(1.5 * far, g->half) : g->half;
+    double most = z * z, mean = z * z + 2.0 / 3 * h * h, half = g->half;
+    for (int i = 0; i < 2; i++) {
+        most += (fabs(q->at[i]) + h) * (fabs(q->at[i]) + h);
+        mean += q->at[i] * q->at[i];
+    }
+    out->most = (f->error + f->quartic * most * most) / g->fall + MOST * whole + off;
+    out->mean = (f->error + f->quartic * most * mean) / g->fall + MEAN * whole + off;
+    double turned = f->turned + f->thrice * sqrt(27) * half * half * half;
+    out->turned = g->fall > turned ? turned / (g->fall - turned) : INFINITY;
+    out->turned = 1.4143 * g->tangent * (out->turned + g->bent * out->most / g->fall) +
+                  MOST_CUBE * 4 * g->fourth * h * h * h;
+    return far < REACH * g->half;
+}
+
+csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch *q,
+                                        csg_graph_room *off)
+{
+    double rest;
+    if (sign_at(g, q, g->half) > 0)
+        return CSG_COLUMNS_FULL;
+    if (sign_at(g, q, -g->half) < 0)
+        return CSG_COLUMNS_EMPTY;
+    return expand(g, q, &rest) && find_room(g, q, rest, off) ? CSG_COLUMNS_CROSSED
+                                                             : CSG_COLUMNS_UNKNOWN;
+}
+
+bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, double half)
+{
+    double most = 3 * half * half;
+    g->f = f;
+    g->half = half;
+    g->room = f->error + f->quartic * most * most;
+    order_axes(g);
+    return find_fall(g);
+}
+
+csg_graph_patch csg_graph_patch_first(const csg_graph_base *g, int i)
+{
+    double half = g->half / CSG_GRAPH_SIDE;
+    return (csg_graph_patch){.at = {(2 * (i % CSG_GRAPH_SIDE) + 1) * half - g->half,
+                                    (2 * (i / CSG_GRAPH_SIDE) + 1) * half - g->half},
+                             .half = {half, half}};
+}
