@@ -106,7 +106,8 @@ const csgm_scene *csgm_scene_get_marked(const csgm_scene *scene, csgm_mark mark)
 double csgm_scene_eval(const csgm_scene *scene, csgm_vec3 at, csgm_vec3 *gradient)
 {
     csgm_status status = CSGM_OK;
-    csg_sample sample = csg_reference_eval(scene, at, &status);
+    csg_sample sample =
+        gradient ? csg_reference_look(scene, at, &status) : csg_reference_eval(scene, at, &status);
     if (status != CSGM_OK)
         sample = (csg_sample){.value = NAN, .gradient = {NAN, NAN, NAN}};
     if (gradient)
@@ -137,8 +138,9 @@ static bool evaluate_points(void *user, uint32_t worker, size_t index)
         return false;
     for (size_t i = index * POINTS_AT_ONCE; i < end; i++) {
         const double *p = job->points + 3 * i;
-        csg_sample sample =
-            csg_reference_eval(job->scene, csg_vec3_make(p[0], p[1], p[2]), &status);
+        csg_vec3 at = {p[0], p[1], p[2]};
+        csg_sample sample = job->gradients ? csg_reference_look(job->scene, at, &status)
+                                           : csg_reference_eval(job->scene, at, &status);
         job->values[i] = sample.value;
         if (job->gradients)
             memcpy(job->gradients + 3 * i, &sample.gradient, sizeof sample.gradient);

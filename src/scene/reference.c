@@ -5,6 +5,7 @@
 #include "scene/reference.h"
 
 #include "scene/formula/formula.h"
+#include "scene/operators/blend_kinds.h"
 #include "scene/operators/choice.h"
 #include "scene/operators/fillet.h"
 #include "scene/operators/rule.h"
@@ -318,6 +319,50 @@ csg_sample csg_reference_below(csg_reference_room *room, const csgm_scene *scene
     return room->samples[node];
 }
 
+/* Whether some value depends on gradients: a fillet's, or a rule's with debulge. */
+static bool turns(const csgm_scene *scene)
+{
+    bool any = false;
+    for (size_t i = 0; i < scene->node_count && !any; i++) {
+        const csg_node *node = &scene->nodes[i];
+        const csg_rule *rule =
+            csg_node_is_operator((csg_node_kind)node->kind) ? csg_scene_rule(scene, node) : NULL;
+        any = csg_node_is_fillet(node) ||
+              (rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0);
+    }
+    return any;
+}
+
+/* A length that is small beside the node's solid, or beside where p is. */
+static double step_of(const csgm_scene *scene, csg_node_id node, csg_vec3 p)
+{
+    static const double STEP = 0x1p-20;
+    csg_vec3 size = csg_box_size(scene->bounds[node]);
+    double far = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
+    double most = fmax(size.x, fmax(size.y, size.z));
+    double length = most > 0 && most < INFINITY ? fmax(most, far) : far;
+    return STEP * (length > 0 ? length : 1);
+}
+
+csg_vec3 csg_reference_true_gradient(csg_reference_room *room, const csgm_scene *scene,
+                                     csg_node_id first, csg_node_id node, csg_vec3 p,
+                                     csg_sample here)
+{
+    static const double JUMP = 1e-2; /* of slopes before and behind: a crease is between */
+    double h = step_of(scene, node, p), slope[3];
+    if (!turns(scene))
+        return here.gradient;
+    for (int axis = 0; axis < 3; axis++) {
+        csg_vec3 step = {axis == 0 ? h : 0, axis == 1 ? h : 0, axis == 2 ? h : 0};
+        double above = csg_reference_below(room, scene, first, node, csg_vec3_add(p, step)).value;
+        double below = csg_reference_below(room, scene, first, node, csg_vec3_sub(p, step)).value;
+        slope[axis] = (above - below) / (2 * h);
+        if (!(fabs(above - 2 * here.value + below) <= JUMP * h))
+            return here.gradient;
+    }
+    return csg_vec3_make(slope[0], slope[1], slope[2]);
+}
+
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
 {
     double stack[STACK_BYTES / sizeof(double)];
@@ -329,6 +374,20 @@ csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *
     place_points(&w, scene, 0, scene->root, p);
     evaluate(&w, scene, 0, scene->root);
     csg_sample root = w.samples[scene->root];
+    csg_reference_room_end(&w, scene);
+    return root;
+}
+
+csg_sample csg_reference_look(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+{
+    double stack[STACK_BYTES / sizeof(double)];
+    workspace w;
+    if (!begin_room(&w, scene, stack)) {
+        *status = CSGM_ERR_MEMORY;
+        return (csg_sample){NAN, {NAN, NAN, NAN}};
+    }
+    csg_sample root = csg_reference_below(&w, scene, 0, scene->root, p);
+    root.gradient = csg_reference_true_gradient(&w, scene, 0, scene->root, p, root);
     csg_reference_room_end(&w, scene);
     return root;
 }

@@ -25,6 +25,10 @@ double csg_reference_union(csg_blend blend, const double *values, size_t count, 
  */
 csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
 
+/* The same with the true gradient: for who wants to look at it, not for what must be the kernels'.
+ */
+csg_sample csg_reference_look(const csgm_scene *scene, csg_vec3 p, csgm_status *status);
+
 /* Scratch for one node at a time. */
 typedef struct csg_reference_work {
     csg_formula_dual *steps;   /* room for the longest formula */
@@ -47,6 +51,14 @@ void csg_reference_room_end(csg_reference_room *room, const csgm_scene *scene);
  * the room then, each at the point that it was asked at. */
 csg_sample csg_reference_below(csg_reference_room *room, const csgm_scene *scene, csg_node_id first,
                                csg_node_id node, csg_vec3 p);
+
+/* The gradient of the values around p. What samples have is what operators mix of their operands',
+ * and leaves out what fillets and debulge gain as these turn; here, in scenes that have such, it is
+ * by central differences of the values (good to some 1e-9), but that of the sample `here` where
+ * there is a crease within 1e-6 of the solid's size. The room's samples are others afterwards. */
+csg_vec3 csg_reference_true_gradient(csg_reference_room *room, const csgm_scene *scene,
+                                     csg_node_id first, csg_node_id node, csg_vec3 p,
+                                     csg_sample here);
 
 /* Where a node at p asks its children. */
 csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node, csg_vec3 p);

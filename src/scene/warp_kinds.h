@@ -21,6 +21,7 @@ enum {
 enum { CSG_TWIST_RATE, CSG_TWIST_LOW, CSG_TWIST_HIGH, CSG_TWIST_REACH };
 /* The first three are those of a twist. */
 enum { CSG_TAPER_RATE, CSG_TAPER_LOW, CSG_TAPER_HIGH, CSG_TAPER_X, CSG_TAPER_Y, CSG_TAPER_REACH };
+enum { CSG_ELBOW_HALF, CSG_ELBOW_COSINE, CSG_ELBOW_SINE };
 enum { CSG_BEND_RADIUS, CSG_BEND_NEAREST, CSG_BEND_ANGLE /* radians */ };
 
 const char *csg_warp_name(csg_warp_kind kind);

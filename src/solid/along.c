@@ -12,7 +12,8 @@
  * 18); a piece that turns is a warp, whose field is divided by its own.
  *
  * Pieces meet without a cut where they have one tangent: an extrusion and a sector end there by
- * themselves. Inside, the field is no more than the way to the next joint but one.
+ * themselves. Inside, the field is no more than the way to the next joint but one. Paths that are
+ * nothing but lines with arcs between them are better off: elbows, below.
  */
 #include "solid/along.h"
 
@@ -228,23 +229,40 @@ static csg_node_id boxed(sweeping *s, csg_node_id sector, double radius, double 
     return csg_solid_done(job, csg_build_cut(job->builder, sector, box, job->where));
 }
 
+static csg_vec3 center_of(const csg_path_piece *arc)
+{
+    return csg_vec3_add(arc->start.at, csg_vec3_scale(arc->inward, arc->radius));
+}
+
+/* Where an arc's middle comes that lies on x: `middle` degrees behind its start. */
+static csg_affine middle_of_arc(const csg_path_piece *arc, double middle)
+{
+    const csg_path_frame *f = &arc->start;
+    csg_vec3 out = csg_vec3_scale(arc->inward, -1), axis = csg_vec3_cross(out, f->tangent);
+    double c = csg_cosine_deg(middle), sine = csg_sine_deg(middle);
+    csg_vec3 x = csg_vec3_add(csg_vec3_scale(out, c), csg_vec3_scale(f->tangent, sine));
+    return columns(x, csg_vec3_cross(axis, x), axis, center_of(arc));
+}
+
+/* The figure as it stands where an arc begins: x away from the axis, y along it. */
+static csg_node_id standing(sweeping *s, const csg_path_piece *arc)
+{
+    const csg_path_frame *f = &arc->start;
+    csg_vec3 out = csg_vec3_scale(arc->inward, -1), axis = csg_vec3_cross(out, f->tangent);
+    csg_affine stand = {{{csg_vec3_dot(f->x, out), csg_vec3_dot(f->y, out), 0},
+                         {csg_vec3_dot(f->x, axis), csg_vec3_dot(f->y, axis), 0},
+                         {0, 0, 1}},
+                        {arc->radius, 0, 0}};
+    return csg_solid_moved(s->job, copied(s), &stand);
+}
+
 /* The figure turned about the arc's axis; the middle of what is made lies on x. */
 static csg_node_id sector(sweeping *s, const csg_path_piece *piece, double before, double behind)
 {
     csg_solid_job *job = s->job;
-    const csg_path_frame *f = &piece->start;
-    csg_vec3 out = csg_vec3_scale(piece->inward, -1), axis = csg_vec3_cross(out, f->tangent);
-    csg_affine stand = {{{csg_vec3_dot(f->x, out), csg_vec3_dot(f->y, out), 0},
-                         {csg_vec3_dot(f->x, axis), csg_vec3_dot(f->y, axis), 0},
-                         {0, 0, 1}},
-                        {piece->radius, 0, 0}};
-    double middle = (piece->angle + behind - before) / 2;
     double half = (piece->angle + behind + before) / 2;
-    double c = csg_cosine_deg(middle), sine = csg_sine_deg(middle);
-    csg_vec3 x = csg_vec3_add(csg_vec3_scale(out, c), csg_vec3_scale(f->tangent, sine));
-    csg_vec3 center = csg_vec3_add(f->at, csg_vec3_scale(piece->inward, piece->radius));
-    csg_affine place = columns(x, csg_vec3_cross(axis, x), axis, center);
-    csg_node_id node = csg_solid_moved(job, copied(s), &stand);
+    csg_affine place = middle_of_arc(piece, (piece->angle + behind - before) / 2);
+    csg_node_id node = standing(s, piece);
     if (node == CSG_NODE_NONE)
         return node;
     node = csg_solid_turn(job, node, 2 * half, -half);
@@ -269,6 +287,155 @@ static csg_node_id body(sweeping *s, size_t i, double before, double behind)
     if (piece->turn == 0)
         return sector(s, piece, before, behind);
     return bent(s, piece, room, before * degree * piece->radius, behind * degree * piece->radius);
+}
+
+/* ---- elbows ----------------------------------------------------------------------------------
+ * Arcs about one axis between two lines, where the path has no corner: one body with both lines,
+ * whole (CSG_WARP_ELBOW). Its field is the figure's own everywhere, and so is its distance. What
+ * shares a line with the next elbow has the same field along it, and each ends at the far end of
+ * it: no joint is needed, and the nearest wall is at least half the line away.
+ */
+
+typedef struct elbow {
+    size_t before, first, last, behind; /* the lines, and the arcs between them */
+    double angle;                       /* of all arcs */
+} elbow;
+
+static csg_vec3 axis_of(const csg_path_piece *arc)
+{
+    return csg_vec3_cross(arc->start.tangent, arc->inward);
+}
+
+static bool goes_on_about(const csg_path_piece *a, const csg_path_piece *b)
+{
+    static const double SAME = 1e-9;
+    double apart = csg_vec3_norm(csg_vec3_sub(center_of(a), center_of(b)));
+    double turned = csg_vec3_norm(csg_vec3_sub(axis_of(a), axis_of(b)));
+    return apart <= SAME * a->radius && turned <= SAME &&
+           fabs(a->radius - b->radius) <= SAME * a->radius;
+}
+
+/* Behind this line; false: what follows is none. */
+static bool find_elbow(const csg_path *path, size_t line, elbow *out)
+{
+    static const double MOST = 179; /* degrees: behind its axis there is nothing of both lines */
+    size_t at = csg_path_after(path, line);
+    *out = (elbow){.before = line, .first = at};
+    while (at != SIZE_MAX && at != line && path->pieces[at].radius > 0) {
+        if (!goes_on_about(&path->pieces[out->first], &path->pieces[at]))
+            return false;
+        out->angle += path->pieces[at].angle;
+        out->last = at;
+        at = csg_path_after(path, at);
+    }
+    out->behind = at;
+    return at != SIZE_MAX && at != line && out->angle > 0 && out->angle < MOST;
+}
+
+/* All of the path is lines with elbows between them. */
+static bool is_of_elbows(const csg_path *path)
+{
+    size_t arcs = 0, held = 0;
+    elbow e;
+    for (size_t i = 0; i < path->count; i++) {
+        const csg_path_piece *piece = &path->pieces[i];
+        if (piece->turn != 0 || csg_path_is_corner(path, i))
+            return false;
+        arcs += piece->radius > 0;
+        if (piece->radius > 0 || csg_path_after(path, i) == SIZE_MAX)
+            continue;
+        if (!find_elbow(path, i, &e))
+            return false;
+        for (size_t k = e.first; k != e.behind; k = csg_path_after(path, k))
+            held++;
+    }
+    return arcs > 0 && held == arcs;
+}
+
+/* Around the figure at a frame. */
+static csg_box box_at(const sweeping *s, const csg_path_frame *f)
+{
+    csg_box box = csg_box_empty();
+    for (size_t k = 0; k < s->figure.point_count; k++) {
+        csg_vec3 p = csg_vec3_add(f->at, in_frame(f, s->figure.points[k]));
+        box = csg_box_hull(box, (csg_box){p, p});
+    }
+    return box;
+}
+
+/* Where an arc is farthest along an axis, between its ends, the figure reaches no farther. */
+static csg_box box_of_arc(const sweeping *s, const csg_path_piece *arc)
+{
+    csg_box box = csg_box_hull(box_at(s, &arc->start), box_at(s, &arc->end));
+    csg_vec3 out = csg_vec3_scale(arc->inward, -1), t = arc->start.tangent, center = center_of(arc);
+    const double outs[3] = {out.x, out.y, out.z}, ways[3] = {t.x, t.y, t.z};
+    for (int k = 0; k < 6; k++) {
+        double sign = k < 3 ? 1 : -1;
+        double angle = csg_atan2(sign * ways[k % 3], sign * outs[k % 3]);
+        if (!(angle > 0 && angle < arc->angle * csg_acos(-1) / 180))
+            continue;
+        csg_vec3 way =
+            csg_vec3_add(csg_vec3_scale(out, csg_cos(angle)), csg_vec3_scale(t, csg_sin(angle)));
+        csg_vec3 p = csg_vec3_add(center, csg_vec3_scale(way, arc->radius));
+        box = csg_box_hull(box, csg_box_grow((csg_box){p, p}, s->reach));
+    }
+    return box;
+}
+
+/* All places inside are as far from its faces as from the surface, since it holds the body. */
+static csg_box box_of_elbow(const sweeping *s, const elbow *e)
+{
+    const csg_path *path = s->path;
+    csg_box box = csg_box_hull(box_at(s, &path->pieces[e->before].start),
+                               box_at(s, &path->pieces[e->behind].end));
+    for (size_t k = e->first; k != e->behind; k = csg_path_after(path, k))
+        box = csg_box_hull(box, box_of_arc(s, &path->pieces[k]));
+    return csg_box_grow(box, 1e-3 * s->reach);
+}
+
+/* The end of one of its lines, `length` behind the arc, which lies on both sides of +x. It must
+ * leave alone the other line, which turns back beyond it where the arc goes round by more than a
+ * right angle, but stays on the other side of y = 0. */
+static csg_node_id end_of_line(sweeping *s, double half_deg, double side, double length)
+{
+    csg_solid_job *job = s->job;
+    csg_vec3 out = {-csg_sine_deg(half_deg), side * csg_cosine_deg(half_deg), 0};
+    csg_node_id end =
+        csg_solid_done(job, csg_build_half_space(job->builder, out, length, job->where));
+    if (half_deg <= 45 || end == CSG_NODE_NONE)
+        return end;
+    csg_node_id other = csg_solid_done(
+        job, csg_build_half_space(job->builder, csg_vec3_make(0, side, 0), 0, job->where));
+    if (other == CSG_NODE_NONE)
+        return other;
+    return csg_solid_done(job, csg_build_operator(job->builder, CSG_NODE_UNION, CSG_SHARP,
+                                                  (csg_node_id[]){end, other}, 2, job->where));
+}
+
+static csg_node_id make_elbow(sweeping *s, const elbow *e)
+{
+    csg_solid_job *job = s->job;
+    const csg_path_piece *arc = &s->path->pieces[e->first];
+    double half = e->angle / 2;
+    const csg_warp warp = {.kind = CSG_WARP_ELBOW, .parameters = {half}};
+    csg_affine place = middle_of_arc(arc, half);
+    csg_node_id parts[3] = {standing(s, arc)};
+    if (parts[0] == CSG_NODE_NONE)
+        return CSG_NODE_NONE;
+    parts[0] = csg_solid_done(job, csg_build_warp(job->builder, &warp, parts[0], job->where));
+    parts[1] = end_of_line(s, half, -1, s->path->pieces[e->before].length);
+    parts[2] = end_of_line(s, half, 1, s->path->pieces[e->behind].length);
+    for (int k = 0; k < 3; k++)
+        if (parts[k] == CSG_NODE_NONE || job->stop)
+            return CSG_NODE_NONE;
+    csg_node_id node = csg_solid_done(job, csg_build_operator(job->builder, CSG_NODE_INTERSECTION,
+                                                              CSG_SHARP, parts, 3, job->where));
+    if (node == CSG_NODE_NONE)
+        return node;
+    node = csg_solid_moved(job, node, &place);
+    if (node == CSG_NODE_NONE)
+        return node;
+    return csg_solid_done(job, csg_build_cut(job->builder, node, box_of_elbow(s, e), job->where));
 }
 
 /* ---- joints ---------------------------------------------------------------------------------- */
@@ -344,7 +511,13 @@ static csg_node_id sweep(sweeping *s)
         csg_solid_no_memory(job);
         return node;
     }
-    for (size_t i = 0; i < s->path->count && !job->stop; i++) {
+    bool elbows = is_of_elbows(s->path);
+    for (size_t i = 0; i < s->path->count && !job->stop && elbows; i++) {
+        elbow e;
+        if (s->path->pieces[i].radius == 0 && find_elbow(s->path, i, &e))
+            pieces[count++] = make_elbow(s, &e);
+    }
+    for (size_t i = 0; i < s->path->count && !job->stop && !elbows; i++) {
         size_t next = csg_path_after(s->path, i);
         pieces[count++] = between_joints(s, i);
         if (next != SIZE_MAX && !job->stop)

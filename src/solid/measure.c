@@ -55,7 +55,8 @@ static bool look_at(const csgm_scene *scene, exactness at, exact_stack *stack)
     if (node->kind == CSG_NODE_OFFSET && !stack->of_leaves &&
         (scene->parameters[node->payload] > 0) != at.outside)
         return false;
-    if (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind != CSG_WARP_REVOLVE)
+    if (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind != CSG_WARP_REVOLVE &&
+        scene->warps[node->payload].kind != CSG_WARP_ELBOW)
         return false;
     if (csg_node_is_operator(node->kind) && !stack->of_leaves && !csg_node_is_plate(node) &&
         (!csg_blend_is_sharp(node->blend) || (!joins && !meets)))

@@ -98,9 +98,9 @@ static void check_intervals(const csg_kernel *kernel, const csg_kernel *scalar,
 {
     enum { MOST_NODES = 256 };
     float low[2][MOST_NODES * CSG_OCTANTS], high[2][MOST_NODES * CSG_OCTANTS];
-    static float scratch[1 << 16];
+    static float scratch[1 << 17];
     assert_true(tape->count <= MOST_NODES);
-    assert_true(csg_kernel_scratch_floats(csg_tape_depth(tape)) <= 1 << 16);
+    assert_true(csg_kernel_scratch_floats(csg_tape_depth(tape)) <= 1 << 17);
     for (size_t i = 0; i + CSG_OCTANTS <= points->count; i += CSG_OCTANTS) {
         float radius = (float)(i % 5) * 0.3f;
         scalar->intervals(tape, points->x + i, points->y + i, points->z + i, radius, NULL, low[0],

@@ -180,6 +180,87 @@ static void sweeps_have_the_volume_of_pappus(void **state)
     }
 }
 
+static csg_vec3 near_scene(csg_random *random, csg_box box)
+{
+    return csg_vec3_make(csg_random_uniform(random, box.min.x, box.max.x),
+                         csg_random_uniform(random, box.min.y, box.max.y),
+                         csg_random_uniform(random, box.min.z, box.max.z));
+}
+
+static double way_to_ends(const csg_path *path, csg_vec3 p)
+{
+    csg_vec3 first = path->pieces[0].start.at, last = path->pieces[path->count - 1].end.at;
+    return fmin(csg_vec3_norm(csg_vec3_sub(first, p)), csg_vec3_norm(csg_vec3_sub(last, p)));
+}
+
+/* From the path itself. */
+static double distance_of(const csg_path *path, csg_vec3 q)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < path->count; i++) {
+        const csg_path_piece *p = &path->pieces[i];
+        csg_vec3 to = csg_vec3_sub(q, p->start.at), near;
+        double along = csg_vec3_dot(to, p->start.tangent);
+        double inward = csg_vec3_dot(to, p->inward);
+        double angle = atan2(along, p->radius - inward) * 180 / PI;
+        double part = p->radius > 0 ? angle / p->angle : along / p->length;
+        near = place(p, fmin(fmax(part, 0), 1));
+        least = fmin(least, csg_vec3_norm(csg_vec3_sub(q, near)));
+        for (int k = 0; k < 2; k++) /* an arc's ends, where the angle is behind it */
+            least = fmin(least, csg_vec3_norm(csg_vec3_sub(q, place(p, k))));
+    }
+    return least;
+}
+
+/* A path of lines with arcs between them has the distance of the figure from the path as its field,
+ * along arcs too, on their inner side and where the path turns back: inside, and outside nearly
+ * everywhere; beside the end of an elbow, on the outer side of the next arc, it may be less, by no
+ * more than sqrt(2) times. Of points that are nearer to the path than to its ends. */
+static void round_paths_are_distances(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *scene;
+        csg_vec3 points[4];
+        uint32_t count;
+        double round;
+    } cases[] = {
+        {"sweep([[0,0,0], [30,0,0], [30,30,0], [30,30,30]], round = 6) circle(2);",
+         {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {30, 30, 30}},
+         4,
+         6},
+        {"sweep([[0,0,0], [30,0,0], [8,14,5], [30,30,30]], round = 4) circle(2);",
+         {{0, 0, 0}, {30, 0, 0}, {8, 14, 5}, {30, 30, 30}},
+         4,
+         4},
+    };
+    csg_random random = {first_seed + 77};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        csg_path path;
+        const csg_path_shape shape = {.points = cases[i].points,
+                                      .count = cases[i].count,
+                                      .round = cases[i].round,
+                                      .up = {0, 0, 1}};
+        make(&path, &shape);
+        assert_int_equal(compile(cases[i].scene), CSGM_OK);
+        csg_box box = csg_box_grow(csg_bounds_of_solid(b.scene), 2);
+        uint32_t compared = 0, exact = 0;
+        for (int n = 0; n < 3000; n++) {
+            csg_vec3 q = near_scene(&random, box);
+            double way = distance_of(&path, q);
+            if (way > 4 || way_to_ends(&path, q) < 2 * way + 1)
+                continue;
+            compared++;
+            double value = sample(q).value, wanted = 2 - way;
+            if (value < wanted - 1e-9 || value > (wanted > 0 ? 1 : sqrt(0.5)) * wanted + 1e-9)
+                fail_msg("case %zu: %g, not %g, at (%g, %g, %g)", i, value, wanted, q.x, q.y, q.z);
+            exact += fabs(value - wanted) < 1e-9;
+        }
+        assert_true(compared > 150 && exact > 0.9 * compared);
+        csg_path_release(&path);
+    }
+}
+
 /* ---- polygons as skeletons ------------------------------------------------------------------- */
 
 /* Steiner's formula: area, edges as half cylinders, corners as parts of one ball. */
@@ -269,13 +350,6 @@ static void draw_path(random_path *r, csg_random *random)
              figures[csg_random_below(random, 3)]);
 }
 
-static csg_vec3 near_scene(csg_random *random, csg_box box)
-{
-    return csg_vec3_make(csg_random_uniform(random, box.min.x, box.max.x),
-                         csg_random_uniform(random, box.min.y, box.max.y),
-                         csg_random_uniform(random, box.min.z, box.max.z));
-}
-
 static void check_slopes(csg_random *random)
 {
     csg_box box = csg_box_grow(csg_bounds_of_solid(b.scene), 1);
@@ -303,12 +377,6 @@ static double shortest_near(const csg_path *path, size_t i, bool *turns)
             *turns = *turns || path->pieces[near[k]].turn != 0;
         }
     return least;
-}
-
-static double way_to_ends(const csg_path *path, csg_vec3 p)
-{
-    csg_vec3 first = path->pieces[0].start.at, last = path->pieces[path->count - 1].end.at;
-    return fmin(csg_vec3_norm(csg_vec3_sub(first, p)), csg_vec3_norm(csg_vec3_sub(last, p)));
 }
 
 /* No wall at joints. All figures reach 0.5 around the path; where pieces are longer than that, a
@@ -403,6 +471,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_turn_with_the_tangent_alone),
         cmocka_unit_test(paths_that_turn_come_where_they_shall),
         cmocka_unit_test(sweeps_have_the_volume_of_pappus),
+        cmocka_unit_test(round_paths_are_distances),
         cmocka_unit_test(sheets_have_the_volume_of_steiner),
         cmocka_unit_test(sheets_are_distances),
         cmocka_unit_test(soft_sheets_have_their_own_range),

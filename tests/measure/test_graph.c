@@ -13,6 +13,7 @@
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
+#include "scene/warp_kinds.h"
 
 enum { CUBES = 150, POINTS = 40 };
 
@@ -216,6 +217,36 @@ static void blends_hold(void **state)
     }
     assert_true(seen.known > 5000 * test_times && seen.near > 30000 * test_times);
     assert_true(seen.turned > 10000 * test_times);
+}
+
+/* Figures turned about an axis or along an elbow, posed. */
+static void warps_hold(void **state)
+{
+    tally seen = {0};
+    has_fillets = false;
+    for (uint64_t i = 0; i < 40 * test_times; i++) {
+        csg_random random = {.state = seed = 35000 + test_first_seed + i};
+        double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
+        csg_primitive_kind kind = i % 2 ? CSG_NODE_CIRCLE : CSG_NODE_RECTANGLE;
+        csg_affine lie =
+            csg_affine_rotate(csg_random_uniform(&random, -180, 180), csg_vec3_make(0, 0, 1));
+        csg_warp warp = {.kind = i % 4 < 2 ? CSG_WARP_REVOLVE : CSG_WARP_ELBOW,
+                         .parameters = {csg_random_uniform(&random, 5, 85)}};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        csg_primitive_of(kind)->example(&random, v);
+        lie = csg_affine_multiply(csg_affine_translate(csg_vec3_make(2.5, 0.3, 0)), lie);
+        csg_node_id node = csg_build_primitive(&m.builder, kind, v, NOWHERE);
+        node = csg_build_transform(&m.builder, &lie, node, NOWHERE);
+        node = csg_build_warp(&m.builder, &warp, node, NOWHERE);
+        if (warp.kind == CSG_WARP_ELBOW)
+            node = csg_build_cut(&m.builder, node, (csg_box){{-3, -4, -4}, {6, 4, 4}}, NOWHERE);
+        mesh_case_compile(&m, posed_anyhow(&m, node, &random));
+        try_scene(&m, &random, &seen);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.known > 1500 * test_times && seen.near > 8000 * test_times);
+    assert_true(seen.turned > 3000 * test_times);
 }
 
 /* ---- graphs ------------------------------------------------------------------------------------
@@ -480,6 +511,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(models_hold),
         cmocka_unit_test(blends_hold),
+        cmocka_unit_test(warps_hold),
         cmocka_unit_test(graphs_hold),
     };
     test_take_search(argc, argv);

@@ -181,6 +181,15 @@ static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
                               2, nowhere);
 }
 
+/* Its straight ends are cut: random solids are finite. */
+static csg_node_id elbow(csg_scene_builder *builder, csg_random *random, csg_node_id figure)
+{
+    const csg_warp warp = {CSG_WARP_ELBOW, {uniform(random, 5, 85)}};
+    const csg_box room = {{-1.5, -1.5, -3}, {3, 1.5, 3}};
+    csg_node_id node = warped(builder, warp, figure);
+    return node == CSG_NODE_NONE ? node : csg_build_cut(builder, node, room, nowhere);
+}
+
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
 {
     csg_node_id node;
@@ -191,7 +200,10 @@ csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
         node = extrusion(builder, random, flat(builder, random, false));
         return csg_build_offset(builder, uniform(random, -0.05, 0.15), node, nowhere);
     case 2:
-        return warped(builder, (csg_warp){CSG_WARP_REVOLVE, {0}}, flat(builder, random, true));
+        node = flat(builder, random, true);
+        return csg_random_below(random, 2)
+                   ? elbow(builder, random, node)
+                   : warped(builder, (csg_warp){CSG_WARP_REVOLVE, {0}}, node);
     case 3:
         node = warped(builder, random_twist_or_taper(random), flat(builder, random, false));
         return extrusion(builder, random, node);

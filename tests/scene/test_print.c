@@ -12,6 +12,7 @@
 #include "collected_text.h"
 #include "random_scene.h"
 #include "scene/formula/formula.h"
+#include "scene/operators/soft.h"
 #include "scene/primitives/kinds.h"
 #include "scene/tree/print.h"
 #include "scene/warp_kinds.h"
@@ -120,11 +121,38 @@ static void test_plates_and_warps(void **state)
         {CSG_FORMULA_X, 0, 0, 0}, {CSG_FORMULA_Y, 0, 0, 0}, {CSG_FORMULA_MAX, 0, 1, 0}};
     csg_node_id pair[2] = {primitive(CSG_NODE_SPHERE, 1, 0, 0, 0),
                            primitive(CSG_NODE_SPHERE, 2, 0, 0, 0)};
-    check_text(csg_build_combine(&builder, steps, 3, 1, pair, 2, NOWHERE),
-               "combine(function (a, b) max(a, b), lipschitz = 1) {\n"
+    check_text(csg_build_combine(&builder, steps, 3, 2, pair, 2, NOWHERE),
+               "combine(function (a, b) max(a, b), lipschitz = 2) {\n"
                "  sphere(r = 1);\n"
                "  sphere(r = 2);\n"
                "}\n");
+}
+
+/* Largest and least of operands that are named once are sharp operators, and nothing else is. */
+static void test_sharp_formulas(void **state)
+{
+    const csg_formula_step all[] = {{CSG_FORMULA_X, 0, 0, 0},   {CSG_FORMULA_Y, 0, 0, 0},
+                                    {CSG_FORMULA_Z, 0, 0, 0},   {CSG_FORMULA_NEG, 2, 0, 0},
+                                    {CSG_FORMULA_MIN, 3, 0, 0}, {CSG_FORMULA_MAX, 1, 4, 0}};
+    const csg_formula_step twice[] = {{CSG_FORMULA_X, 0, 0, 0},
+                                      {CSG_FORMULA_Y, 0, 0, 0},
+                                      {CSG_FORMULA_MAX, 0, 1, 0},
+                                      {CSG_FORMULA_MIN, 2, 0, 0}};
+    csg_node_id three[3], pair[2], soft[2];
+    for (int k = 0; k < 2; k++) {
+        pair[k] = primitive(CSG_NODE_SPHERE, k + 1, 0, 0, 0);
+        soft[k] = csg_build_soft(&builder, (csg_soft){CSG_FALLOFF_SEXTIC, 2},
+                                 primitive(CSG_NODE_SPHERE, k + 1, 0, 0, 0), NOWHERE);
+    }
+    csg_node_id node = csg_build_combine(&builder, twice, 4, 0, pair, 2, NOWHERE);
+    assert_int_equal(builder.scene->nodes[node].kind, CSG_NODE_COMBINE);
+    node = csg_build_combine(&builder, twice, 3, 0, soft, 2, NOWHERE);
+    assert_int_equal(builder.scene->nodes[node].kind, CSG_NODE_COMBINE);
+    for (int k = 0; k < 3; k++)
+        three[k] = primitive(CSG_NODE_SPHERE, k + 1, 0, 0, 0);
+    check_text(csg_build_combine(&builder, all, 6, 0, three, 3, NOWHERE),
+               "union() {\n  sphere(r = 2);\n  difference() {\n    sphere(r = 1);\n"
+               "    sphere(r = 3);\n  }\n}\n");
 }
 
 static void test_numbers_read_back(void **state)
@@ -205,8 +233,10 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, begin, end)
     const struct CMUnitTest tests[] = {
-        TEST(test_primitives),        TEST(test_tree),          TEST(test_plates_and_warps),
-        TEST(test_numbers_read_back), TEST(test_random_scenes), TEST(test_deep_tree),
+        TEST(test_primitives),        TEST(test_tree),
+        TEST(test_plates_and_warps),  TEST(test_sharp_formulas),
+        TEST(test_numbers_read_back), TEST(test_random_scenes),
+        TEST(test_deep_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
  * `change` of what it is at the centre, row by row:
  *
  *   revolve  the row of the radius turns by asin(rho / r); at the axis it is any unit vector
+ *   elbow    along the arc as revolve, along its straight ends constant; where what is nearest to
+ *            one end meets what is nearest to the other, behind the axis, any unit vector
  *   slice    constant
  *   twist    rows x and y turn by rate rho, and their part along z, rate times a coordinate of the
  *            image, changes by rate times how far the image moves
@@ -59,6 +61,24 @@ static bool pass_revolve(const float *own, const double q[3], double rho, passag
     p->row[1][2] = 1;
     p->change[0] = is_clear ? sqrt(2 - 2 * sqrt(1 - s * s)) : 1;
     p->image[0] = r;
+    p->image[1] = q[2];
+    return true;
+}
+
+static bool pass_elbow(const float *own, const double q[3], double rho, passage *p)
+{
+    double c = (double)own[CSG_ELBOW_COSINE], s = (double)own[CSG_ELBOW_SINE];
+    double r = length_of(q[0], q[1]), part = r > 0 ? rho / r : 1, side = q[1] < 0 ? -1 : 1;
+    double a = q[0] * c + fabs(q[1]) * s, b = q[0] * s - fabs(q[1]) * c;
+    double behind = q[0] < 0 ? fabs(q[1]) : r; /* the way to the half-plane behind the axis */
+    bool is_straight = b < -rho && behind > rho, is_clear = part < 0.9 && behind > rho;
+    double by_a = b > 0 ? a / r : 1, by_b = b > 0 ? b / r : 0;
+    bool is_known = is_straight || is_clear;
+    p->row[0][0] = is_known ? by_a * c + by_b * s : 0;
+    p->row[0][1] = is_known ? side * (by_a * s - by_b * c) : 0;
+    p->row[1][2] = 1;
+    p->change[0] = is_straight ? 0 : is_clear ? sqrt(2 - 2 * sqrt(1 - part * part)) : 1;
+    p->image[0] = b > 0 ? r : a;
     p->image[1] = q[2];
     return true;
 }

@@ -110,7 +110,7 @@ size_t csg_kernel_scratch_floats(uint32_t depth)
 {
     enum { MOST_FLOATS = 1 << 20 };
     size_t whole = csg_kernel_arrays(depth) * CSG_BATCH;
-    size_t least = csg_kernel_arrays(depth) * CSG_LANES;
+    size_t least = CSG_KERNEL_WALKS * csg_kernel_arrays(depth) * CSG_LANES;
     if (whole <= MOST_FLOATS)
         return whole;
     return least > MOST_FLOATS ? least : (size_t)MOST_FLOATS;

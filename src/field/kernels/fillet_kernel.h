@@ -181,7 +181,7 @@ static void fillet_pair_shares(const fillet_arrays *a, size_t count, const fille
 }
 
 /* As fillet_combine, of two operands. */
-static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count)
+static void fillet_combine_pair(const fillet_arrays *a, int slopes, int colors, size_t count)
 {
     fillet_pairs pairs;
     float value[CSG_BATCH], first[CSG_BATCH], second[CSG_BATCH], plane[CSG_BATCH];
@@ -206,7 +206,7 @@ static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count
     if (a->planes)
         fillet_pairs_end(count, &pairs);
     fillet_pair_shares(a, count, &pairs, value, shares, plane);
-    for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++) {
+    for (uint32_t c = 0; c < (uint32_t)(slopes + colors); c++) {
         float *restrict u = fillet_channel(a, 0, c);
         const float *restrict v = fillet_channel(a, 1, c);
         for (size_t i = 0; i < count; i++) {
@@ -214,7 +214,7 @@ static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count
             both = second[i] == 0 ? u[i] : both;
             u[i] = first[i] == 0 ? v[i] : both;
         }
-        for (uint32_t p = 2; p < 2 + a->planes && c < 3; p++) {
+        for (uint32_t p = 2; p < 2 + a->planes && c < (uint32_t)slopes; p++) {
             const float *restrict end = fillet_channel(a, p, c);
             for (size_t i = 0; i < count; i++)
                 u[i] = plane[i] == (float)p ? end[i] : u[i];
@@ -224,18 +224,20 @@ static void fillet_combine_pair(const fillet_arrays *a, int colors, size_t count
         a->values[i] = a->turn * value[i];
 }
 
-/* The result takes the place of the first operand: value, gradient and `colors` more channels. */
-static void fillet_combine(const fillet_arrays *a, int colors, size_t count)
+/* The result takes the place of the first operand: value, `slopes` channels, where it ends those
+ * of the plane, and `colors` more. */
+static void fillet_combine(const fillet_arrays *a, int slopes, int colors, size_t count)
 {
     if (a->operands == 2) {
-        fillet_combine_pair(a, colors, count);
+        fillet_combine_pair(a, slopes, colors, count);
         return;
     }
     for (size_t i = 0; i < count; i++) {
         fillet_mix mix = fillet_at(a, i);
-        for (uint32_t c = 0; c < 3 + (uint32_t)colors; c++)
-            fillet_channel(a, 0, c)[i] = mix.is_ended && c < 3 ? fillet_channel(a, mix.plane, c)[i]
-                                                               : fillet_mean(a, &mix, c, i);
+        for (uint32_t c = 0; c < (uint32_t)(slopes + colors); c++)
+            fillet_channel(a, 0, c)[i] = mix.is_ended && c < (uint32_t)slopes
+                                             ? fillet_channel(a, mix.plane, c)[i]
+                                             : fillet_mean(a, &mix, c, i);
         a->values[i] = a->turn * mix.value;
     }
 }

@@ -20,8 +20,11 @@
 #include "field/kernels/formula_kernel.h"
 #include "field/kernels/joins.h"
 #include "field/kernels/leaf_kernel.h"
+#include "field/kernels/round_kernel.h"
 #include "field/kernels/rule_kernel.h"
+#include "field/kernels/slots.h"
 #include "field/kernels/smooth_kernel.h"
+#include "field/kernels/turned_kernel.h"
 #include "field/kernels/warp_kernel.h"
 #include "field/rule_layout.h"
 #include "field/turning.h"
@@ -29,99 +32,9 @@
 #define STRING_(a) #a
 #define STRING(a) STRING_(a)
 
-/* ---- the round operator: all operands at once (operators.md 12) -------------------------------------------- */
-
-/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0.
- */
-static inline float round_excess(float w, float m, float sum, float squares)
-{
-    float mean = sum / m;
-    float rest = w * w - (squares - sum * mean);
-    return larger(w - mean - sqrtf(larger(rest, 0) / m), 0);
-}
-
-/* Operands are f[k * stride + i]. Turns them into gaps u = max - f (in place), and leaves the
- * largest in top and G - max in excess. For intersections f is negated first. work: another
- * arity * stride floats, and 4 * stride more. */
-static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is_union, float w,
-                        size_t count, float *restrict top, float *restrict excess,
-                        float *restrict work)
-{
-    for (uint32_t k = 0; k < arity; k++) {
-        float *restrict v = f + k * stride;
-        if (!is_union)
-            for (size_t i = 0; i < count; i++)
-                v[i] = -v[i];
-        if (k == 0)
-            memcpy(top, v, count * sizeof(float));
-        else
-            for (size_t i = 0; i < count; i++)
-                top[i] = larger(top[i], v[i]);
-    }
-    for (uint32_t k = 0; k < arity; k++) {
-        float *restrict v = f + k * stride;
-        for (size_t i = 0; i < count; i++)
-            v[i] = top[i] - v[i];
-    }
-    if (arity == 2) { /* what the general walk below gives for two operands, bit for bit */
-        for (size_t i = 0; i < count; i++) {
-            float u = f[i] + f[stride + i]; /* one of them is 0 */
-            excess[i] = w - u > 0 ? round_excess(w, 2.0f, u, u * u) : 0;
-        }
-        return;
-    }
-    float *restrict rest = work, *restrict sum = work + arity * stride,
-                    *restrict squares = sum + stride, *restrict next = squares + stride,
-                    *restrict taken = next + stride;
-    for (uint32_t k = 0; k < arity; k++)
-        memcpy(rest + k * stride, f + k * stride, count * sizeof(float));
-    for (size_t i = 0; i < count; i++)
-        sum[i] = squares[i] = excess[i] = 0;
-    /* The active prefix: operands by growing gap, until one does not reach G. A lane that has
-     * stopped stays: its next gap is no smaller. */
-    for (uint32_t m = 1; m <= arity; m++) {
-        for (size_t i = 0; i < count; i++) {
-            next[i] = INFINITY;
-            taken[i] = 0;
-        }
-        for (uint32_t k = 0; k < arity; k++)
-            for (size_t i = 0; i < count; i++)
-                next[i] = smaller(next[i], rest[k * stride + i]);
-        for (uint32_t k = 0; k < arity; k++)
-            for (size_t i = 0; i < count; i++) {
-                int hit = (rest[k * stride + i] == next[i]) & (taken[i] == 0);
-                rest[k * stride + i] = hit ? INFINITY : rest[k * stride + i];
-                taken[i] = hit ? 1.0f : taken[i];
-            }
-        if (m == 1)
-            continue; /* the largest operand itself: gap 0, excess 0 */
-        float reached = 0;
-        for (size_t i = 0; i < count; i++) {
-            int active = w - next[i] > excess[i];
-            float u = active ? next[i] : 0;
-            sum[i] += u;
-            squares[i] += u * u;
-            excess[i] = active ? round_excess(w, (float)m, sum[i], squares[i]) : excess[i];
-            reached = active ? 1.0f : reached;
-        }
-        if (reached == 0)
-            break;
-    }
-}
-
 /* ---- walks --------------------------------------------------------------------------------- */
 
-typedef struct slots {
-    float *memory;
-    size_t stride; /* floats of one array */
-} slots;
-
-static float *slot(slots s, size_t index)
-{
-    return s.memory + index * s.stride;
-}
-
-static void combine_round_values(const csg_tape *tape, const csg_tape_node *node, slots s,
+static void combine_round_values(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                                  size_t first, size_t count, float *work)
 {
     float w = tape->parameters[node->parameters + CSG_OPERATOR_N];
@@ -144,13 +57,13 @@ static float combine_raise(const csg_tape *tape, const csg_tape_node *node)
 }
 
 /* Operands that a formula of fewer does not read are the first one. */
-static float *operand(slots s, size_t first, uint32_t arity, uint32_t k)
+static float *operand(kernel_slots s, size_t first, uint32_t arity, uint32_t k)
 {
     return slot(s, k < arity ? first + k : first);
 }
 
-static void combine_values(const csg_tape *tape, const csg_tape_node *node, slots s, size_t first,
-                           size_t count, float *work)
+static void combine_values(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
+                           size_t first, size_t count, float *work)
 {
     const float raise = combine_raise(tape, node);
     const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
@@ -174,7 +87,7 @@ static inline void join_siblings(const csg_tape_node *node, const float *paramet
 }
 
 /* Leaves the result in slot 0; `depth` slots, then the round operator's work. */
-static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t depth)
+static void walk_values(const csg_tape *tape, csg_points p, kernel_slots s, uint32_t depth)
 {
     size_t top = 0;
     float *work = slot(s, depth);
@@ -201,25 +114,24 @@ static void walk_values(const csg_tape *tape, csg_points p, slots s, uint32_t de
     }
 }
 
-/* Gradients, colours, or one colour with the gradients that a turning join needs for it. */
+/* Gradients, colours, or one colour with the gradients that a turning join needs for it. With twice
+ * the gradients: those that operators see, and behind them the true ones (turned_kernel.h). */
 typedef struct plan {
     int gradients, colors, first_color;
 } plan;
 
-enum { GRADIENT_CHANNELS = 3, COLOR_CHANNELS = 4, MOST_CHANNELS = 4 };
-
 #define GRADIENTS_ONLY ((plan){GRADIENT_CHANNELS, 0, 0})
+#define TRUE_GRADIENTS ((plan){2 * GRADIENT_CHANNELS, 0, 0})
 #define COLORS_ONLY ((plan){0, COLOR_CHANNELS, 0})
+
+static int has_true_ones(plan wanted)
+{
+    return wanted.gradients > GRADIENT_CHANNELS;
+}
 
 static int channels_of(plan wanted)
 {
     return wanted.gradients + wanted.colors;
-}
-
-/* Slots of a mixed walk: values first (depth of them), then the channels of each. */
-static float *channel(slots s, uint32_t depth, size_t index, int c)
-{
-    return slot(s, depth + index * MOST_CHANNELS + (size_t)c);
 }
 
 /* A term of a sum that must not depend on the order of its terms: a multiple of 2^-32 of the size,
@@ -253,7 +165,7 @@ static void mean_of_many(const float *shares, size_t stride, uint32_t arity, con
     }
 }
 
-static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                                 uint32_t depth, size_t first, int channels, size_t count,
                                 float *work)
 {
@@ -300,8 +212,8 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
 }
 
 /* Gradients by the chain rule; colours in the proportions of the partial derivatives' sizes. */
-static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
-                          size_t first, plan wanted, size_t count, float *work)
+static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
+                          uint32_t depth, size_t first, plan wanted, size_t count, float *work)
 {
     const float raise = combine_raise(tape, node);
     float *partial[3] = {work + s.stride, work + 2 * s.stride, work + 3 * s.stride};
@@ -332,7 +244,7 @@ static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, slots
 }
 
 /* work: room for a number per operand and plane. */
-static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, slots s,
+static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                                size_t first, float *work)
 {
     const float *own = tape->parameters + node->parameters;
@@ -351,8 +263,9 @@ static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, 
     };
 }
 
-static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p, slots s,
-                       uint32_t depth, size_t index, plan wanted, csg_warped_points *warped)
+static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                       kernel_slots s, uint32_t depth, size_t index, plan wanted,
+                       csg_warped_points *warped)
 {
     if (wanted.gradients)
         CSG_THIS_LEAF_KERNEL.gradients(tape, node, p, slot(s, index), channel(s, depth, index, 0),
@@ -360,6 +273,9 @@ static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_poin
                                        warped);
     else
         CSG_THIS_LEAF_KERNEL.values(tape, node, p, slot(s, index), warped);
+    for (int c = GRADIENT_CHANNELS; c < wanted.gradients; c++)
+        memcpy(channel(s, depth, index, c), channel(s, depth, index, c - GRADIENT_CHANNELS),
+               p.count * sizeof(float));
     if (!wanted.colors)
         return;
     csg_color color = tape->colors[(uint32_t)tape->parameters[node->parameters + CSG_LEAF_COLOR]];
@@ -371,8 +287,8 @@ static void leaf_mixed(const csg_tape *tape, const csg_tape_node *node, csg_poin
     }
 }
 
-static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots s, uint32_t depth,
-                          size_t index, plan wanted, size_t count, float *work)
+static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
+                          uint32_t depth, size_t index, plan wanted, size_t count, float *work)
 {
     float *slope = work, *flat = work + s.stride;
     const float *p = tape->parameters + node->parameters;
@@ -395,7 +311,7 @@ static void deliver_mixed(const csg_tape *tape, const csg_tape_node *node, slots
 }
 
 /* Of fields: gradients by the partial derivatives, colours by the operands' parts. */
-static void join_fields_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+static void join_fields_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                               uint32_t depth, size_t index, plan wanted, size_t count, float *work)
 {
     const float *parameters = tape->parameters + node->join_parameters, *b = slot(s, index + 1);
@@ -420,7 +336,7 @@ static void join_fields_mixed(const csg_tape *tape, const csg_tape_node *node, s
         mix(ga[c], gb[c], by_a, count);
 }
 
-static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, slots s,
+static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                               uint32_t depth, size_t index, plan wanted, size_t count, float *work)
 {
     if (is_of_fields(node->join_blend)) {
@@ -446,9 +362,49 @@ static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, s
     join_siblings(node, parameters, a, b, count);
 }
 
-/* Inlined for each plan: with few points the loops over channels are what takes time. */
+/* The true gradient's channels of a result. */
+static void add_turned(const turned *turn, kernel_slots s, uint32_t depth, size_t index)
+{
+    float *const out[3] = {channel(s, depth, index, GRADIENT_CHANNELS),
+                           channel(s, depth, index, GRADIENT_CHANNELS + 1),
+                           channel(s, depth, index, GRADIENT_CHANNELS + 2)};
+    turned_add(turn, out);
+}
+
+static inline void fillet_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                                kernel_slots s, uint32_t depth, size_t index, plan wanted,
+                                float *work, turned *turn)
+{
+    fillet_arrays arrays = fillet_of(tape, node, s, index, work);
+    arrays.channels = channel(s, depth, index, 0);
+    int gains = has_true_ones(wanted) && turned_of_fillet(turn, node, &arrays, p);
+    fillet_combine(&arrays, wanted.gradients, wanted.colors, p.count);
+    if (gains)
+        add_turned(turn, s, depth, index);
+}
+
+static void turned_join_mixed(const csg_tape *tape, const csg_tape_node *node, csg_points p,
+                              kernel_slots s, uint32_t depth, size_t index, plan wanted,
+                              float *work, turned *turn)
+{
+    const float *const values[2] = {slot(s, index), slot(s, index + 1)};
+    const float *const gradients[2][3] = {
+        {channel(s, depth, index, 0), channel(s, depth, index, 1), channel(s, depth, index, 2)},
+        {channel(s, depth, index + 1, 0), channel(s, depth, index + 1, 1),
+         channel(s, depth, index + 1, 2)},
+    };
+    const float *parameters = tape->parameters + node->join_parameters;
+    int gains = turned_of_join(turn, node, parameters, values, gradients, p);
+    join_mixed(tape, node, s, depth, index, wanted, p.count, work);
+    if (gains)
+        add_turned(turn, s, depth, index);
+}
+
+/* Inlined for each plan: with few points the loops over channels are what takes time. turn: for
+ * true gradients. The last node's join is not this tape's own. */
 __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tape, csg_points p,
-                                                             slots s, uint32_t depth, plan wanted)
+                                                             kernel_slots s, uint32_t depth,
+                                                             plan wanted, turned *turn)
 {
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
@@ -463,20 +419,26 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
             combine_round_mixed(tape, node, s, depth, top++, channels_of(wanted), p.count, work);
         } else if (csg_op_is_fillet(node->op)) {
             top -= node->arity;
-            fillet_arrays arrays = fillet_of(tape, node, s, top, work);
-            arrays.channels = channel(s, depth, top++, 0);
-            fillet_combine(&arrays, wanted.colors, p.count);
+            fillet_mixed(tape, node, p, s, depth, top++, wanted, work, turn);
         } else if (node->op == CSG_OP_COMBINE) {
             top -= node->arity;
             combine_mixed(tape, node, s, depth, top++, wanted, p.count, work);
         } else if (csg_op_delivers(node->op)) {
             deliver_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
-        if (node->join) {
+        if (node->join && top > 1) {
             top--;
-            join_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
+            if (has_true_ones(wanted) && node->join_blend == CSG_BLEND_TURNING)
+                turned_join_mixed(tape, node, p, s, depth, top - 1, wanted, work, turn);
+            else
+                join_mixed(tape, node, s, depth, top - 1, wanted, p.count, work);
         }
     }
+}
+
+static void walk_gradients(const csg_tape *tape, csg_points p, kernel_slots s, uint32_t depth)
+{
+    walk_mixed(tape, p, s, depth, GRADIENTS_ONLY, NULL);
 }
 
 /* Whether a value depends on its operands' gradients. */
@@ -519,32 +481,29 @@ static void values(const csg_tape *tape, const float *x, const float *y, const f
     }
     uint32_t depth = csg_tape_depth(tape);
     size_t batch = batch_size(depth, scratch_floats);
-    slots s = {scratch, batch};
+    kernel_slots s = {scratch, batch};
     int turning = tape->turns && turns(tape);
     for (size_t i = 0; i < count; i += batch) {
         size_t n = least(batch, count - i);
         csg_points p = {x + i, y + i, z + i, padded(n)};
         if (turning)
-            walk_mixed(tape, p, s, depth, GRADIENTS_ONLY);
+            walk_gradients(tape, p, s, depth);
         else
             walk_values(tape, p, s, depth);
         memcpy(out + i, slot(s, 0), n * sizeof(float));
     }
 }
 
-/* out: for each channel of the plan that is wanted, the first `gradients` of them left out where
- * they are only means. f: values; NULL: not wanted. */
+/* out: for each channel of the plan that is wanted, those before them left out where they are only
+ * means. f: values; NULL: not wanted. turn: for true gradients. */
 __attribute__((always_inline)) static inline void
 mixed(const csg_tape *tape, const float *x, const float *y, const float *z, size_t count, float *f,
-      float *const *out, plan wanted, float *scratch, size_t scratch_floats)
+      float *const *out, plan wanted, kernel_slots s, uint32_t depth, turned *turn)
 {
-    uint32_t depth = csg_tape_depth(tape);
-    size_t batch = batch_size(depth, scratch_floats);
-    slots s = {scratch, batch};
-    int first = wanted.colors ? wanted.gradients : 0;
-    for (size_t i = 0; i < count; i += batch) {
-        size_t n = least(batch, count - i);
-        walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, wanted);
+    int first = wanted.colors ? wanted.gradients : wanted.gradients - GRADIENT_CHANNELS;
+    for (size_t i = 0; i < count; i += s.stride) {
+        size_t n = least(s.stride, count - i);
+        walk_mixed(tape, (csg_points){x + i, y + i, z + i, padded(n)}, s, depth, wanted, turn);
         if (f)
             memcpy(f + i, slot(s, 0), n * sizeof(float));
         for (int c = first; c < channels_of(wanted); c++)
@@ -557,7 +516,9 @@ static void values_and_gradients(const csg_tape *tape, const float *x, const flo
                                  float *gz, float *scratch, size_t scratch_floats)
 {
     float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
-    mixed(tape, x, y, z, count, f, out, GRADIENTS_ONLY, scratch, scratch_floats);
+    uint32_t depth = csg_tape_depth(tape);
+    kernel_slots s = {scratch, batch_size(depth, scratch_floats)};
+    mixed(tape, x, y, z, count, f, out, GRADIENTS_ONLY, s, depth, NULL);
 }
 
 static void gradients(const csg_tape *tape, const float *x, const float *y, const float *z,
@@ -567,22 +528,44 @@ static void gradients(const csg_tape *tape, const float *x, const float *y, cons
     values_and_gradients(tape, x, y, z, count, NULL, gx, gy, gz, scratch, scratch_floats);
 }
 
+/* A third of the scratch is for the walk, the rest for what it asks of places nearby. */
+static void true_gradients(const csg_tape *tape, const float *x, const float *y, const float *z,
+                           size_t count, const csg_valid_cube *cube, float *gx, float *gy,
+                           float *gz, float *scratch, size_t scratch_floats)
+{
+    float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
+    uint32_t depth = csg_tape_depth(tape);
+    if (!tape->turns || !turns(tape)) {
+        gradients(tape, x, y, z, count, gx, gy, gz, scratch, scratch_floats);
+        return;
+    }
+    kernel_slots s = {scratch, batch_size(depth, scratch_floats / CSG_KERNEL_WALKS)};
+    kernel_slots room = {slot(s, csg_kernel_arrays(depth)), s.stride};
+    turned turn; /* not filled: it is large */
+    turn.tape = tape;
+    turn.cube = cube;
+    turn.room = room;
+    mixed(tape, x, y, z, count, NULL, out, TRUE_GRADIENTS, s, depth, &turn);
+}
+
 static void colors(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
 {
+    uint32_t depth = csg_tape_depth(tape);
+    kernel_slots s = {scratch, batch_size(depth, scratch_floats)};
     if (!tape->turns || !turns(tape)) {
-        mixed(tape, x, y, z, count, NULL, rgba, COLORS_ONLY, scratch, scratch_floats);
+        mixed(tape, x, y, z, count, NULL, rgba, COLORS_ONLY, s, depth, NULL);
         return;
     }
     for (int c = 0; c < COLOR_CHANNELS; c++)
-        mixed(tape, x, y, z, count, NULL, &rgba[c], (plan){GRADIENT_CHANNELS, 1, c}, scratch,
-              scratch_floats);
+        mixed(tape, x, y, z, count, NULL, &rgba[c], (plan){GRADIENT_CHANNELS, 1, c}, s, depth,
+              NULL);
 }
 
 /* ---- intervals ------------------------------------------------------------------------------- */
 
-static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, slots lows,
-                              slots highs, size_t first)
+static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, kernel_slots lows,
+                              kernel_slots highs, size_t first)
 {
     const float raise = combine_raise(tape, node);
     const float *low[3], *high[3];
@@ -618,7 +601,7 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
 {
     uint32_t depth = csg_tape_depth(tape);
     csg_points p = {cx, cy, cz, CSG_OCTANTS};
-    slots lows = {scratch, CSG_OCTANTS}, highs = {slot(lows, depth), CSG_OCTANTS};
+    kernel_slots lows = {scratch, CSG_OCTANTS}, highs = {slot(lows, depth), CSG_OCTANTS};
     float *work = slot(highs, depth);
     size_t top = 0;
     csg_warped_points warped;
@@ -673,6 +656,7 @@ const csg_kernel CSG_THIS_KERNEL = {
     .values = values,
     .gradients = gradients,
     .values_and_gradients = values_and_gradients,
+    .true_gradients = true_gradients,
     .colors = colors,
     .intervals = intervals,
     .warped = warped,

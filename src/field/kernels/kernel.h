@@ -7,12 +7,16 @@
 
 #include "field/kernels/batch.h"
 
-/* Arrays of one batch that a walk over a tape of this depth needs: values, up to four channels, and
+/* Arrays of one batch that a walk over a tape of this depth needs: values, up to six channels, and
  * the round operator's work (its operands again and six more). */
 static inline size_t csg_kernel_arrays(uint32_t depth)
 {
-    return (size_t)depth * 6 + 8;
+    return (size_t)depth * 8 + 8;
 }
+/* True gradients need a walk's arrays, again for operands at places nearby, and as many once more
+ * for what these are kept in. */
+enum { CSG_KERNEL_WALKS = 3 };
+
 /* Floats of scratch for every function below: whole batches for ordinary depths, smaller ones for
  * tapes that would need megabytes. */
 size_t csg_kernel_scratch_floats(uint32_t depth);
@@ -36,6 +40,14 @@ typedef struct csg_kernel {
     void (*values_and_gradients)(const csg_tape *tape, const float *x, const float *y,
                                  const float *z, size_t count, float *out, float *gx, float *gy,
                                  float *gz, float *scratch, size_t scratch_floats);
+
+    /* Gradients of the values as they are: with what a fillet or a turning join gains as its
+     * operands' gradients turn from place to place, which `gradients` leaves out. For points within
+     * the cube, outside of which the tape need not be valid (NULL: it is everywhere): seven
+     * gradients of operands each where they blend. */
+    void (*true_gradients)(const csg_tape *tape, const float *x, const float *y, const float *z,
+                           size_t count, const csg_valid_cube *cube, float *gx, float *gy,
+                           float *gz, float *scratch, size_t scratch_floats);
 
     /* Colours: the leaves' in the proportions of the operators' partial derivatives; rgba[4]
      * arrays of count. */

@@ -35,6 +35,20 @@ static inline warped slice_at(const float *own, point p)
     return (warped){{p.x, p.y, 0}, {1.0f, 0, 0}, {0, 1.0f, 0}, {0, 0, 0}};
 }
 
+/* As in double. */
+static inline warped elbow_at(const float *own, point p)
+{
+    float c = own[CSG_ELBOW_COSINE], s = own[CSG_ELBOW_SINE];
+    float a = p.x * c + absolute(p.y) * s, b = p.x * s - absolute(p.y) * c;
+    float da = larger(a, 0), db = larger(b, 0), d = sqrtf(da * da + db * db);
+    float by_a = b > 0 ? quotient(da, d) : 1.0f, by_b = b > 0 ? quotient(db, d) : 0;
+    float side = p.y < 0 ? -1.0f : 1.0f;
+    return (warped){{(b > 0 ? d : a), p.z, 0},
+                    {by_a * c + by_b * s, 0, 0},
+                    {side * (by_a * s - by_b * c), 0, 0},
+                    {0, 1.0f, 0}};
+}
+
 /* One comparison, since gcc makes no vectors of choices by two: differences are above 0 just where
  * their numbers are apart that way. */
 static inline int is_between(float z, float low, float high)

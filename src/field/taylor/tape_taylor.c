@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/taylor/warp_taylor.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/fillet.h"
@@ -45,27 +46,26 @@ static double most_of(const walker *w, const csg_taylor *a)
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
-static void place(const walker *w, const csg_tape_node *leaf, csg_smooth_leaf *l)
+/* Own coordinates; false: a warp on the way is not smooth in the ball. *off: how far the warps'
+ * floats put them from where they are. */
+static bool place(const walker *w, const csg_tape_node *leaf, csg_smooth_leaf *l, double *off)
 {
     const float *parameters = w->tape->parameters + leaf->parameters;
     const float *frame = parameters + CSG_LEAF_FRAME;
     bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
-    const csg_taylor *p[3];
-    for (int i = 0; i < 3; i++) {
-        csg_smooth *q = &l->p[i];
-        memset(q, 0, sizeof *q);
-        q->f.value = is_offset ? w->c[i] - (double)frame[i] : (double)frame[9 + i];
-        for (int k = 0; k < 3; k++) {
-            q->f.slope[k] = is_offset ? i == k : (double)frame[3 * i + k];
-            q->f.value += is_offset ? 0 : q->f.slope[k] * w->c[k];
-            q->g[k].value = q->f.slope[k];
-        }
-        p[i] = &q->f;
-    }
-    l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
     l->radius = w->radius;
-    l->reach = csg_taylor_change_of(p, 3, w->radius).most;
     l->with_slopes = w->with_slopes;
+    if (!csg_taylor_warped(w->tape, leaf->warp, w->c, l, off))
+        return false;
+    if (is_offset)
+        for (int i = 0; i < 3; i++)
+            l->p[i].f.value -= (double)frame[i];
+    else
+        csg_taylor_placed(frame, l);
+    const csg_taylor *p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
+    l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+    l->reach = csg_taylor_change_of(p, 3, w->radius).most;
+    return true;
 }
 
 /* How far the value is off: by the parameters, and by the doubles that are computed with. */
@@ -83,16 +83,18 @@ static bool find_leaf(const walker *w, const csg_tape_node *leaf, operand *o)
     const float *parameters = w->tape->parameters + leaf->parameters;
     csg_smooth_leaf l;
     csg_smooth own;
-    if (leaf->warp || !csg_op_is_primitive(leaf->op) ||
-        csg_node_is_curve(csg_op_node_kind(leaf->op)))
+    double off = 0;
+    if (!csg_op_is_primitive(leaf->op) || csg_node_is_curve(csg_op_node_kind(leaf->op)) ||
+        !place(w, leaf, &l, &off))
         return false;
-    place(w, leaf, &l);
     if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
         return false;
     o->piece = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
                                (double)parameters[CSG_LEAF_SIGMA], &own);
-    o->piece.f.error += rounding_of(w, parameters);
+    o->piece.f.error += rounding_of(w, parameters) + off;
     o->piece.f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
+    if (leaf->warp) /* as far as what is curved turns by that, twice */
+        o->piece.f.turned += OF_DIRECTIONS + 2 * off / w->radius;
     o->has_slopes = w->with_slopes;
     return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.quartic);
 }

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "field/cones/cone.h"
+#include "scene/warp_kinds.h"
 
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
 static const double FAR = 2.5, HALF_FAR = 1.3;  /* cells */
@@ -311,14 +312,24 @@ static bool end_cube(csg_certify_worker *w, const csg_certify_cube *cube)
     return true;
 }
 
+/* Whether sines or angles are needed on the way to a leaf; revolutions, slices and elbows take a
+ * root. */
+static bool is_slow_way(const csg_tape *tape, uint32_t warp)
+{
+    bool slow = false;
+    for (uint32_t w = warp; w && !slow; w = tape->warps[w - 1].outer)
+        slow = csg_warp_traits(tape->warps[w - 1].kind) & CSG_WARP_IS_CUT;
+    return slow;
+}
+
 /* Leaves that are slow to evaluate. */
-static uint32_t slow_leaves(const csg_certify_cube *cube)
+static uint32_t slow_leaves(const csg_certify_worker *w, const csg_certify_cube *cube)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < cube->node_count; i++) {
         const csg_tape_node *node = &cube->nodes[i];
-        if (csg_op_is_leaf(node->op) &&
-            (node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD || node->warp))
+        if (csg_op_is_leaf(node->op) && (node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD ||
+                                         is_slow_way(w->reach.tape, node->warp)))
             count++;
     }
     return count;
@@ -326,7 +337,7 @@ static uint32_t slow_leaves(const csg_certify_cube *cube)
 
 static bool is_within_budget(csg_certify_worker *w, const csg_certify_cube *cube)
 {
-    uint32_t slow = slow_leaves(cube);
+    uint32_t slow = slow_leaves(w, cube);
     w->cubes++;
     w->block_visits += slow ? slow * SLOW_BLOCK_VISIT : 1;
     w->visits[cube->cell] += slow ? SLOW_VISIT : 1;
@@ -424,7 +435,7 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return false;
     if (settled)
         return true;
-    if (is_cell && !slow_leaves(cube) && !look_for_missed(w, cube->cell))
+    if (is_cell && !slow_leaves(w, cube) && !look_for_missed(w, cube->cell))
         return false;
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;

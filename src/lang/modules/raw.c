@@ -44,8 +44,9 @@ static csg_warp_kind warp_kind(csg_module_call *call, uint32_t index)
             if (strcmp(name.as.string->text, csg_warp_name(kind)) == 0)
                 break;
     if (kind == CSG_WARP_COUNT)
-        csg_argument_error(call, index, CSG_DIAG_BAD_TYPE,
-                           "kind must be \"revolve\", \"slice\", \"twist\", \"taper\" or \"bend\"");
+        csg_argument_error(
+            call, index, CSG_DIAG_BAD_TYPE,
+            "kind must be \"revolve\", \"slice\", \"twist\", \"taper\", \"bend\" or \"elbow\"");
     return kind;
 }
 

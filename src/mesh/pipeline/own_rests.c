@@ -183,8 +183,10 @@ static bool is_on(const csg_own_rests *rests, csg_own_rest *rest, csg_vec3 at, c
 {
     if (!csg_box_contains_box(rest->box, (csg_box){at, at}))
         return false;
-    csg_sample sample = csg_reference_below(&rest->room, rest->scene, 0, rest->scene->root, at);
-    *gradient = csg_vec3_normalize(sample.gradient);
+    csg_node_id root = rest->scene->root;
+    csg_sample sample = csg_reference_below(&rest->room, rest->scene, 0, root, at);
+    *gradient = csg_vec3_normalize(
+        csg_reference_true_gradient(&rest->room, rest->scene, 0, root, at, sample));
     return fabs(sample.value) <= 2 * rests->tolerance;
 }
 

@@ -83,8 +83,20 @@ static uint32_t leaf_at(csg_probe_room *room, const csg_bricks *b, const float a
     return room->leaf;
 }
 
-static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
+/* Of cubes of so many cells along an edge, the one at this place. */
+static csg_valid_cube cube_of(const csg_lattice *lattice, const uint32_t place[3], uint32_t edge)
 {
+    csg_valid_cube cube;
+    for (int axis = 0; axis < 3; axis++)
+        cube.center[axis] = csg_lattice_coordinate(lattice, axis, place[axis] * edge + edge / 2);
+    cube.half = (float)(0.5 * edge * lattice->cell_size);
+    return cube;
+}
+
+/* Returns the cube that the tape is for. */
+static csg_valid_cube choose_tape(const csg_probe *probe, const float at[3], size_t i)
+{
+    static const csg_valid_cube EVERYWHERE = {.half = INFINITY};
     const csg_marching *m = probe->marching;
     csg_probe_room *room = probe->room;
     uint32_t cell[3];
@@ -96,11 +108,13 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
             csg_tape tape = csg_bricks_tape(m->bricks, &m->bricks->items[found]);
             room->nodes[i] = tape.nodes;
             room->node_count[i] = tape.count;
+            return cube_of(m->bricks->lattice, m->bricks->items[found].at,
+                           CSG_BRICK_EDGE << (m->bricks->finest - m->bricks->items[found].level));
         }
-        return;
+        return EVERYWHERE;
     }
     if (!csg_lattice_cell_of(m->lattice, at, cell))
-        return;
+        return EVERYWHERE;
     const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,
                                cell[2] / CSG_BLOCK_EDGE};
     if (!room->has_last || memcmp(room->last, place, sizeof place) != 0) {
@@ -110,11 +124,11 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
     }
     const csg_block *block = room->found;
     if (!block)
-        return;
+        return EVERYWHERE;
     room->nodes[i] = block->nodes;
     room->node_count[i] = block->node_count;
     if (!block->parts)
-        return;
+        return cube_of(m->lattice, place, CSG_BLOCK_EDGE);
     unsigned octant = 0;
     for (unsigned axis = 0; axis < 3; axis++)
         octant |= (cell[axis] % CSG_BLOCK_EDGE >= CSG_PART_EDGE ? 1u : 0u) << axis;
@@ -122,6 +136,9 @@ static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
         room->nodes[i] = block->parts[octant].nodes;
         room->node_count[i] = block->parts[octant].node_count;
     }
+    const uint32_t part[3] = {cell[0] / CSG_PART_EDGE, cell[1] / CSG_PART_EDGE,
+                              cell[2] / CSG_PART_EDGE};
+    return cube_of(m->lattice, part, CSG_PART_EDGE);
 }
 
 /* Links the points of each tape, in their order. How many tapes there are: their first points are
@@ -241,6 +258,23 @@ void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size
 {
     values_and_gradients out = {f, g};
     each_tape(probe, at, count, visit_gradients, &out);
+}
+
+void csg_probe_true_gradient(csg_probe *probe, const float at[3], float out[3])
+{
+    csg_probe_room *room = probe->room;
+    csg_valid_cube cube = choose_tape(probe, at, 0);
+    csg_tape tape = probe->marching->field->tape;
+    float *const c[3] = {room->channels[0], room->channels[1], room->channels[2]};
+    tape.nodes = room->nodes[0];
+    tape.count = room->node_count[0];
+    room->next[0] = NO_POINT;
+    gather(room, (const float(*)[3])at, 0);
+    probe->marching->kernel->true_gradients(&tape, room->x, room->y, room->z, 1, &cube, c[0], c[1],
+                                            c[2], probe->scratch, probe->scratch_floats);
+    for (int k = 0; k < 3; k++)
+        out[k] = c[k][0];
+    probe->evaluations++;
 }
 
 /* ---- colours and materials --------------------------------------------------------------------

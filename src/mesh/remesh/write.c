@@ -55,10 +55,10 @@ static void number_vertex(writer *w, uint32_t vertex)
 
 static csg_vec3 outward(csg_remesh *r, csg_vec3 at)
 {
-    const float place[1][3] = {{(float)at.x, (float)at.y, (float)at.z}};
-    float g[1][3];
-    csg_probe_gradients(&r->probe, place, 1, g);
-    return csg_vec3_normalize(csg_vec3_make(-(double)g[0][0], -(double)g[0][1], -(double)g[0][2]));
+    const float place[3] = {(float)at.x, (float)at.y, (float)at.z};
+    float g[3];
+    csg_probe_true_gradient(&r->probe, place, g);
+    return csg_vec3_normalize(csg_vec3_make(-(double)g[0], -(double)g[1], -(double)g[2]));
 }
 
 /* At a crease the gradient takes one side, or has none: a little within the triangle it is that of

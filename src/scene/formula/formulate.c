@@ -92,6 +92,17 @@ static point_terms revolve_terms(csg_terms *t, const double *v, const csg_term *
     return (point_terms){{csg_term_norm2(t, p[0], p[1]), p[2], csg_term_number(t, 0)}};
 }
 
+/* hypot(max(a, 0), max(b, 0)) + min(a, 0): where b > 0, a is too. */
+static point_terms elbow_terms(csg_terms *t, const double *v, const csg_term *p)
+{
+    double c = v[CSG_ELBOW_COSINE], s = v[CSG_ELBOW_SINE];
+    csg_term y = csg_term_abs(t, p[1]), none = csg_term_number(t, 0);
+    csg_term a = csg_term_add(t, csg_term_mul_number(t, p[0], c), csg_term_mul_number(t, y, s));
+    csg_term b = csg_term_sub(t, csg_term_mul_number(t, p[0], s), csg_term_mul_number(t, y, c));
+    csg_term d = csg_term_norm2(t, csg_term_max(t, a, none), csg_term_max(t, b, none));
+    return (point_terms){{csg_term_add(t, d, csg_term_min(t, a, none)), p[2], none}};
+}
+
 static point_terms slice_terms(csg_terms *t, const double *v, const csg_term *p)
 {
     return (point_terms){{p[0], p[1], csg_term_number(t, 0)}};
@@ -102,6 +113,8 @@ static point_terms warped(csg_terms *t, const csg_warp *warp, const csg_term *p)
     switch ((csg_warp_kind)warp->kind) { /* no default: a warp that is missing does not compile */
     case CSG_WARP_REVOLVE:
         return revolve_terms(t, warp->parameters, p);
+    case CSG_WARP_ELBOW:
+        return elbow_terms(t, warp->parameters, p);
     case CSG_WARP_SLICE:
         return slice_terms(t, warp->parameters, p);
     case CSG_WARP_TWIST:

@@ -68,6 +68,13 @@ static bool bend_settle(csg_warp *warp, csg_box child, const char **why)
     return v[CSG_BEND_NEAREST] > 1e-3 * radius;
 }
 
+static bool elbow_settle(csg_warp *warp, csg_box child, const char **why)
+{
+    double *v = warp->parameters;
+    csg_sin_cos_deg(v[CSG_ELBOW_HALF], &v[CSG_ELBOW_SINE], &v[CSG_ELBOW_COSINE]);
+    return true;
+}
+
 static bool revolve_check(const double *v, csg_refusal *refusal)
 {
     return true;
@@ -95,6 +102,12 @@ static bool taper_check(const double *v, csg_refusal *refusal)
 static bool bend_check(const double *v, csg_refusal *refusal)
 {
     return csg_check_positive(refusal, v[CSG_BEND_RADIUS], "the radius");
+}
+
+static bool elbow_check(const double *v, csg_refusal *refusal)
+{
+    return (v[CSG_ELBOW_HALF] > 0 && v[CSG_ELBOW_HALF] < 90) ||
+           csg_refuse(refusal, "half the angle must be above 0 and below 90 degrees");
 }
 
 /* ---- points ---------------------------------------------------------------------------------- */
@@ -172,6 +185,22 @@ static csg_warped bend_at(const double *v, csg_vec3 p)
                          vec3(around * sine - outward * cosine, 0, cosine)}};
 }
 
+/* D is the largest of p . e over the unit vectors e to the points of the arc: of a point within its
+ * angle the distance from the axis, of another one p . e of the nearer end. So D less the arc's
+ * radius is the signed distance from the arc with its straight ends in the plane, on both sides: of
+ * a convex set it is the largest of those from its tangents, and within it of all of them. a is p .
+ * e of that end, b is above 0 within the angle, where a is too. */
+static csg_warped elbow_at(const double *v, csg_vec3 p)
+{
+    double c = v[CSG_ELBOW_COSINE], s = v[CSG_ELBOW_SINE], side = p.y < 0 ? -1 : 1;
+    double a = p.x * c + fabs(p.y) * s, b = p.x * s - fabs(p.y) * c;
+    double d = b > 0 ? csg_hypot(a, b) : a;
+    double by_a = b > 0 ? a / d : 1, by_b = b > 0 ? b / d : 0;
+    return (csg_warped){
+        vec3(d, p.z, 0),
+        {vec3(by_a * c + by_b * s, 0, 0), vec3(side * (by_a * s - by_b * c), 0, 0), vec3(0, 1, 0)}};
+}
+
 /* ---- the Lipschitz constant -------------------------------------------------------------------
  * Twist: around the axis, a point's image moves by rho rate for a step along z; the largest
  * singular value of [[1, k], [0, 1]] is (k + sqrt(k^2 + 4)) / 2. Bend: steps around the line grow
@@ -185,6 +214,11 @@ static double revolve_scale(const double *v)
 }
 
 static double slice_scale(const double *v)
+{
+    return 1;
+}
+
+static double elbow_scale(const double *v)
 {
     return 1;
 }
@@ -224,6 +258,12 @@ static csg_box ring_box(double radius, double low, double high)
 static csg_box revolve_box(const double *v, csg_box child, bool all_round)
 {
     return ring_box(child.max.x, child.min.y, child.max.y);
+}
+
+/* D is at least x, since +x is a direction of the arc. */
+static csg_box elbow_box(const double *v, csg_box child, bool all_round)
+{
+    return (csg_box){{-INFINITY, -INFINITY, child.min.y}, {child.max.x, INFINITY, child.max.y}};
 }
 
 static csg_box slice_box(const double *v, csg_box child, bool all_round)

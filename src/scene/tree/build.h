@@ -119,7 +119,8 @@ csg_node_id csg_build_cut(csg_scene_builder *builder, csg_node_id node, csg_box 
                           csg_span where);
 /* F(children), one to three of them, x, y, z of the formula being their fields (scene.h). slope: a
  * bound on the sum of the partial derivatives' sizes, raised to the one that is proven; 0:
- * computed, which fails for formulas that are too steep to tell. */
+ * computed, which fails for formulas that are too steep to tell. A largest or least of operands
+ * that are named once each is a sharp operator. */
 csg_node_id csg_build_combine(csg_scene_builder *builder, const csg_formula_step *steps,
                               uint32_t count, double slope, const csg_node_id *children,
                               size_t child_count, csg_span where);

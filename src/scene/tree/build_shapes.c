@@ -204,6 +204,7 @@ static csg_node_id room_of(csg_scene_builder *builder, const csg_warp *warp, csg
     case CSG_WARP_BEND:
         return bend_room(builder, warp, child, where);
     case CSG_WARP_REVOLVE: /* these are not cut */
+    case CSG_WARP_ELBOW:
     case CSG_WARP_SLICE:
     case CSG_WARP_COUNT:
         break;

@@ -89,6 +89,8 @@ static const char *obstacle_of_warp(const csg_warp *warp, bool of_figure)
         return of_figure ? NULL : "twisted solids";
     case CSG_WARP_TAPER:
         return of_figure ? NULL : "tapered solids";
+    case CSG_WARP_ELBOW:
+        return of_figure ? NULL : "bent solids";
     case CSG_WARP_BEND:
         return "bent solids";
     case CSG_WARP_COUNT:
@@ -410,7 +412,8 @@ static void put_warp(const csg_printer *out, const csg_warp *warp)
     case CSG_WARP_TWIST:
         put_twist(out, warp->parameters);
         break;
-    case CSG_WARP_BEND: /* obstacle_of_warp */
+    case CSG_WARP_ELBOW: /* put_elbow */
+    case CSG_WARP_BEND:  /* obstacle_of_warp */
     case CSG_WARP_COUNT:
         break;
     }
@@ -427,6 +430,37 @@ static void put_offset(const csg_printer *out, const csg_node *node)
         put_ball(out, "sphere", r);
         csg_put(out, "\n");
     }
+}
+
+/* A module of its own, before all else: its child is needed three times. */
+static void put_elbow_module(const csg_printer *out)
+{
+    const csgm_scene *scene = out->scene;
+    bool any = false;
+    for (size_t i = 0; i < scene->warp_count; i++)
+        any |= scene->warps[i].kind == CSG_WARP_ELBOW;
+    if (any)
+        csg_put(out,
+                "module elbow(half, reach) {\n"
+                "  rotate(-half) rotate_extrude(angle = 2 * half, " FACETS ") children();\n"
+                "  rotate(-half) rotate([90, 0, 0]) linear_extrude(height = reach) children();\n"
+                "  rotate(half) rotate([90, 0, 0]) translate([0, 0, -reach])"
+                " linear_extrude(height = reach) children();\n"
+                "}\n");
+}
+
+/* Its straight ends go on as far as the room does. */
+static void put_elbow(const csg_printer *out, const csg_warp *warp, csg_box room)
+{
+    double reach = csg_vec3_norm(csg_box_size(room));
+    csg_put_argument(out, "elbow(", "half", warp->parameters[CSG_ELBOW_HALF]);
+    csg_put_argument(out, ", ", "reach", reach);
+    csg_put(out, ")\n");
+}
+
+static bool is_elbow(const csgm_scene *scene, const csg_node *node)
+{
+    return node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind == CSG_WARP_ELBOW;
 }
 
 /* The line that a node with children begins with. */
@@ -492,7 +526,8 @@ static csg_box room_of_children(const csgm_scene *scene, const csg_node *node, c
         return room;
     double r = csg_hypot(fmax(fabs(room.min.x), fabs(room.max.x)),
                          fmax(fabs(room.min.y), fabs(room.max.y)));
-    if (scene->warps[node->payload].kind == CSG_WARP_REVOLVE)
+    if (scene->warps[node->payload].kind == CSG_WARP_REVOLVE ||
+        scene->warps[node->payload].kind == CSG_WARP_ELBOW)
         return (csg_box){{-r, room.min.z, -r}, {r, room.max.z, r}};
     if (scene->warps[node->payload].kind == CSG_WARP_SLICE)
         return (csg_box){{room.min.x, room.min.y, -r}, {room.max.x, room.max.y, r}};
@@ -533,7 +568,10 @@ static bool open_node(openscad_text *w, csg_node_id id, csg_box room, bool is_so
         put_leaf(&w->out, node, room);
         return true;
     }
-    put_call(&w->out, node);
+    if (is_elbow(scene, node))
+        put_elbow(&w->out, &scene->warps[node->payload], room);
+    else
+        put_call(&w->out, node);
     if (!csg_memory_reserve(&scene->context->memory, &open, &w->open_capacity, w->open_count + 1,
                             sizeof *w->open))
         return false;
@@ -583,8 +621,10 @@ csgm_status csg_scene_print_openscad(const csgm_scene *scene, csgm_text_fn *sink
         room = (csg_box){{-1, -1, -1}, {1, 1, 1}};
     if (status == CSGM_OK && !csg_box_is_finite(room))
         status = refuse(scene, scene->root, NULL);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK) {
+        put_elbow_module(&w.out);
         status = write_all(&w, widen(room));
+    }
     csg_memory_release(&scene->context->memory, w.open, w.open_capacity * sizeof *w.open);
     return status == CSGM_ERR_MEMORY ? csg_context_no_memory(scene->context) : status;
 }

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT
+ * The round operator: all operands at once (operators.md 12). Part of kernel.c, in a file of its
+ * own.
+ */
+#ifndef CSG_FIELD_ROUND_KERNEL_H
+#define CSG_FIELD_ROUND_KERNEL_H
+
+#include <math.h>
+#include <string.h>
+
+#include "base/select.h"
+
+/* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0.
+ */
+static inline float round_excess(float w, float m, float sum, float squares)
+{
+    float mean = sum / m;
+    float rest = w * w - (squares - sum * mean);
+    return larger(w - mean - sqrtf(larger(rest, 0) / m), 0);
+}
+
+/* Operands are f[k * stride + i]. Turns them into gaps u = max - f (in place), and leaves the
+ * largest in top and G - max in excess. For intersections f is negated first. work: another
+ * arity * stride floats, and 4 * stride more. */
+static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is_union, float w,
+                        size_t count, float *restrict top, float *restrict excess,
+                        float *restrict work)
+{
+    for (uint32_t k = 0; k < arity; k++) {
+        float *restrict v = f + k * stride;
+        if (!is_union)
+            for (size_t i = 0; i < count; i++)
+                v[i] = -v[i];
+        if (k == 0)
+            memcpy(top, v, count * sizeof(float));
+        else
+            for (size_t i = 0; i < count; i++)
+                top[i] = larger(top[i], v[i]);
+    }
+    for (uint32_t k = 0; k < arity; k++) {
+        float *restrict v = f + k * stride;
+        for (size_t i = 0; i < count; i++)
+            v[i] = top[i] - v[i];
+    }
+    if (arity == 2) { /* what the general walk below gives for two operands, bit for bit */
+        for (size_t i = 0; i < count; i++) {
+            float u = f[i] + f[stride + i]; /* one of them is 0 */
+            excess[i] = w - u > 0 ? round_excess(w, 2.0f, u, u * u) : 0;
+        }
+        return;
+    }
+    float *restrict rest = work, *restrict sum = work + arity * stride,
+                    *restrict squares = sum + stride, *restrict next = squares + stride,
+                    *restrict taken = next + stride;
+    for (uint32_t k = 0; k < arity; k++)
+        memcpy(rest + k * stride, f + k * stride, count * sizeof(float));
+    for (size_t i = 0; i < count; i++)
+        sum[i] = squares[i] = excess[i] = 0;
+    /* The active prefix: operands by growing gap, until one does not reach G. A lane that has
+     * stopped stays: its next gap is no smaller. */
+    for (uint32_t m = 1; m <= arity; m++) {
+        for (size_t i = 0; i < count; i++) {
+            next[i] = INFINITY;
+            taken[i] = 0;
+        }
+        for (uint32_t k = 0; k < arity; k++)
+            for (size_t i = 0; i < count; i++)
+                next[i] = smaller(next[i], rest[k * stride + i]);
+        for (uint32_t k = 0; k < arity; k++)
+            for (size_t i = 0; i < count; i++) {
+                int hit = (rest[k * stride + i] == next[i]) & (taken[i] == 0);
+                rest[k * stride + i] = hit ? INFINITY : rest[k * stride + i];
+                taken[i] = hit ? 1.0f : taken[i];
+            }
+        if (m == 1)
+            continue; /* the largest operand itself: gap 0, excess 0 */
+        float reached = 0;
+        for (size_t i = 0; i < count; i++) {
+            int active = w - next[i] > excess[i];
+            float u = active ? next[i] : 0;
+            sum[i] += u;
+            squares[i] += u * u;
+            excess[i] = active ? round_excess(w, (float)m, sum[i], squares[i]) : excess[i];
+            reached = active ? 1.0f : reached;
+        }
+        if (reached == 0)
+            break;
+    }
+}
+
+#endif
