@@ -42,8 +42,20 @@ csg_taylor csg_taylor_sum(const csg_taylor *a, double factor, const csg_taylor *
 
 csg_taylor csg_taylor_scaled(const csg_taylor *a, double factor)
 {
-    const csg_taylor none = {.value = 0};
-    return csg_taylor_sum(&none, factor, a);
+    double size = fabs(factor);
+    csg_taylor out;
+    out.value = factor * a->value;
+    for (int k = 0; k < 3; k++)
+        out.slope[k] = factor * a->slope[k];
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+        out.bend[n] = factor * a->bend[n];
+    for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
+        out.third[n] = factor * a->third[n];
+    out.error = size * a->error;
+    out.quartic = size * a->quartic;
+    out.turned = size * a->turned;
+    out.thrice = size * a->thrice;
+    return out;
 }
 
 csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3])

@@ -17,17 +17,17 @@
 enum { NODES_MOST = 24 /* of a tape; more are not looked at */ };
 
 typedef struct operand {
-    csg_smooth piece;
+    csg_taylor f;
     uint32_t node; /* the last of its subtree */
-    bool is_known;
-    bool has_slopes; /* of unit length */
+    uint32_t leaf; /* where it is one alone */
+    bool is_known, is_leaf;
 } operand;
 
 typedef struct walker {
     const csg_tape *tape;
     const double *c;
     double radius;
-    bool with_slopes;       /* there are fillets */
+    bool has_fillets;
     bool signs[NODES_MOST]; /* of each node: nothing but its sign matters */
     operand stack[NODES_MOST];
     uint32_t top;
@@ -48,19 +48,21 @@ static double most_of(const walker *w, const csg_taylor *a)
 
 /* Own coordinates; false: a warp on the way is not smooth in the ball. *off: how far the warps'
  * floats put them from where they are. */
-static bool place(const walker *w, const csg_tape_node *leaf, csg_smooth_leaf *l, double *off)
+static bool place(const walker *w, const csg_tape_node *leaf, bool with_slopes, csg_smooth_leaf *l,
+                  double *off)
 {
     const float *parameters = w->tape->parameters + leaf->parameters;
     const float *frame = parameters + CSG_LEAF_FRAME;
     bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
     l->radius = w->radius;
-    l->with_slopes = w->with_slopes;
-    if (!csg_taylor_warped(w->tape, leaf->warp, w->c, l, off))
+    l->with_slopes = with_slopes;
+    if (!leaf->warp && !is_offset)
+        csg_taylor_place_points(frame, w->c, l);
+    else if (!csg_taylor_warped(w->tape, leaf->warp, w->c, l, off))
         return false;
-    if (is_offset)
-        for (int i = 0; i < 3; i++)
-            l->p[i].f.value -= (double)frame[i];
-    else
+    for (int i = 0; i < 3 && is_offset; i++)
+        l->p[i].f.value -= (double)frame[i];
+    if (leaf->warp && !is_offset)
         csg_taylor_placed(frame, l);
     const csg_taylor *p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
     l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
@@ -77,7 +79,9 @@ static double rounding_of(const walker *w, const float *parameters)
            OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
 }
 
-static bool find_leaf(const walker *w, const csg_tape_node *leaf, operand *o)
+/* With its derivatives, if they are asked for. */
+static bool find_piece(const walker *w, const csg_tape_node *leaf, bool with_slopes,
+                       csg_smooth *out)
 {
     static const double OF_DIRECTIONS = 1e-6; /* by floats of own parameters */
     const float *parameters = w->tape->parameters + leaf->parameters;
@@ -85,18 +89,27 @@ static bool find_leaf(const walker *w, const csg_tape_node *leaf, operand *o)
     csg_smooth own;
     double off = 0;
     if (!csg_op_is_primitive(leaf->op) || csg_node_is_curve(csg_op_node_kind(leaf->op)) ||
-        !place(w, leaf, &l, &off))
+        !place(w, leaf, with_slopes, &l, &off) ||
+        !csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
         return false;
-    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
-        return false;
-    o->piece = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
-                               (double)parameters[CSG_LEAF_SIGMA], &own);
-    o->piece.f.error += rounding_of(w, parameters) + off;
-    o->piece.f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
+    *out = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
+                           (double)parameters[CSG_LEAF_SIGMA], &own);
+    out->f.error += rounding_of(w, parameters) + off;
+    out->f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
     if (leaf->warp) /* as far as what is curved turns by that, twice */
-        o->piece.f.turned += OF_DIRECTIONS + 2 * off / w->radius;
-    o->has_slopes = w->with_slopes;
-    return isfinite(o->piece.f.value + o->piece.f.error + o->piece.f.quartic);
+        out->f.turned += OF_DIRECTIONS + 2 * off / w->radius;
+    return true;
+}
+
+static bool find_leaf(const walker *w, uint32_t index, operand *o)
+{
+    csg_smooth piece;
+    if (!find_piece(w, &w->tape->nodes[index], false, &piece))
+        return false;
+    o->f = piece.f;
+    o->leaf = index;
+    o->is_leaf = true;
+    return isfinite(o->f.value + o->f.error + o->f.quartic);
 }
 
 /* ---- operators of two --------------------------------------------------------------------------
@@ -123,15 +136,15 @@ static void add_apart(const walker *w, csg_taylor *f, double apart)
  * decides nowhere. */
 static int decider(const walker *w, operand *a, const operand *b, double turn, bool signs)
 {
-    csg_taylor d = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    csg_taylor d = csg_taylor_sum(&a->f, -1, &b->f);
     double apart = apart_at_most(w, &d);
     if (isfinite(apart)) {
-        add_apart(w, &a->piece.f, apart);
+        add_apart(w, &a->f, apart);
         return 0;
     }
     if (csg_taylor_reach(&d, w->radius) < fabs(d.value))
         return turn * d.value > 0 ? 0 : 1;
-    const csg_taylor *f[2] = {&a->piece.f, &b->piece.f};
+    const csg_taylor *f[2] = {&a->f, &b->f};
     for (int i = 0; i < 2 && signs; i++) {
         bool is_hidden = turn > 0 ? most_of(w, f[i]) < 0 : least_of(w, f[i]) > 0;
         bool is_all = turn > 0 ? least_of(w, f[i]) > 0 : most_of(w, f[i]) < 0;
@@ -207,16 +220,15 @@ static bool join_siblings(walker *w, uint32_t index)
     }
     if (node->join_blend != CSG_BLEND_PARABOLA && node->join_blend != CSG_BLEND_HYPERBOLA)
         return false;
-    csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    csg_taylor x = csg_taylor_sum(&a->f, -1, &b->f);
     double reach = csg_taylor_reach(&x, w->radius), apart = fabs(x.value);
     if (apart - reach > support) {
         if (turn * x.value < 0)
             *a = *b;
         return true;
     }
-    a->has_slopes = false;
-    return apart + reach < support &&
-           blend_two(w, node, &a->piece.f, &b->piece.f, turn, &a->piece.f);
+    a->is_leaf = false;
+    return apart + reach < support && blend_two(w, node, &a->f, &b->f, turn, &a->f);
 }
 
 /* ---- round -------------------------------------------------------------------------------------
@@ -235,7 +247,7 @@ static void sort_operands(const operand *of, uint32_t count, double turn, uint32
 {
     for (uint32_t i = 0; i < count; i++) {
         uint32_t at = i;
-        for (; at > 0 && turn * of[order[at - 1]].piece.f.value < turn * of[i].piece.f.value; at--)
+        for (; at > 0 && turn * of[order[at - 1]].f.value < turn * of[i].f.value; at--)
             order[at] = order[at - 1];
         order[at] = i;
     }
@@ -248,13 +260,13 @@ static bool find_level(const walker *w, const operand *of, const uint32_t *order
     csg_taylor mean = csg_taylor_constant(0);
     csg_taylor under = csg_taylor_constant(width * width / m), root;
     if (m == 1) {
-        *out = of[order[0]].piece.f;
+        *out = of[order[0]].f;
         return true;
     }
     for (uint32_t i = 0; i < m; i++)
-        mean = csg_taylor_sum(&mean, 1.0 / m, &of[order[i]].piece.f);
+        mean = csg_taylor_sum(&mean, 1.0 / m, &of[order[i]].f);
     for (uint32_t i = 0; i < (m == 2 ? 1 : m); i++) {
-        csg_taylor d = csg_taylor_sum(&of[order[i]].piece.f, -1, &mean);
+        csg_taylor d = csg_taylor_sum(&of[order[i]].f, -1, &mean);
         d = csg_taylor_square(&d, w->radius);
         under = csg_taylor_sum(&under, m == 2 ? -1.0 : -1.0 / m, &d);
     }
@@ -278,7 +290,7 @@ static bool combine_round(walker *w, const csg_tape_node *node)
         return false;
     sort_operands(of, node->arity, turn, order);
     for (; m < node->arity; m++) {
-        double f = turn * of[order[m]].piece.f.value;
+        double f = turn * of[order[m]].f.value;
         if (m && !(width + f - level > 0))
             break;
         sum += f;
@@ -289,7 +301,7 @@ static bool combine_round(walker *w, const csg_tape_node *node)
     if (!find_level(w, of, order, m, width, turn, &out))
         return false;
     for (uint32_t i = 0; i < node->arity; i++) {
-        csg_taylor d = csg_taylor_sum(&of[order[i]].piece.f, -1, &out);
+        csg_taylor d = csg_taylor_sum(&of[order[i]].f, -1, &out);
         double touches = width + turn * d.value, reach = csg_taylor_reach(&d, w->radius);
         if (i < m ? !(touches > reach) && m > 1 : !(touches < -reach))
             return false;
@@ -299,8 +311,8 @@ static bool combine_round(walker *w, const csg_tape_node *node)
         of[0] = of[order[0]];
         return true;
     }
-    of[0].piece.f = out;
-    of[0].has_slopes = false;
+    of[0].f = out;
+    of[0].is_leaf = false;
     return true;
 }
 
@@ -312,18 +324,21 @@ static bool find_turn(const walker *w, const operand *a, const operand *b, csg_t
 {
     static const double UNIT = 1e-6, ROUNDING = 0x1p-23 /* of directions by floats */;
     const operand *both[2] = {a, b};
+    csg_smooth pieces[2];
     double off = ROUNDING;
     for (int i = 0; i < 2; i++) {
         double square = 0;
+        if (!both[i]->is_leaf || !find_piece(w, &w->tape->nodes[both[i]->leaf], true, &pieces[i]))
+            return false;
         for (int k = 0; k < 3; k++)
-            square += both[i]->piece.g[k].value * both[i]->piece.g[k].value;
-        if (!both[i]->has_slopes || !(fabs(square - 1) < UNIT))
+            square += pieces[i].g[k].value * pieces[i].g[k].value;
+        if (!(fabs(square - 1) < UNIT))
             return false;
         off += fabs(square - 1);
     }
     *out = csg_taylor_constant(1);
     for (int k = 0; k < 3; k++) {
-        csg_taylor p = csg_taylor_product(&a->piece.g[k], &b->piece.g[k], w->radius);
+        csg_taylor p = csg_taylor_product(&pieces[0].g[k], &pieces[1].g[k], w->radius);
         *out = csg_taylor_sum(out, -1, &p);
     }
     out->error += off;
@@ -379,7 +394,7 @@ static int find_end(const walker *w, const csg_tape_node *node, const operand *o
         double beyond = beyond_of(w, of, pair, 2, p), rounding = BEYOND_ROUNDING * fabs(beyond);
         if (!isfinite(beyond))
             continue;
-        csg_taylor inside = csg_taylor_raised(of[p].piece.f, turn * beyond);
+        csg_taylor inside = csg_taylor_raised(of[p].f, turn * beyond);
         csg_taylor over = csg_taylor_sum(&inside, -1, out);
         double reach = csg_taylor_reach(&over, w->radius) + rounding;
         if (turn * over.value > reach)
@@ -405,13 +420,13 @@ static bool is_flush(const walker *w, const csg_tape_node *node, operand *of, co
         for (uint32_t k = 0; k < count && isfinite(beyond) && of[p].is_known; k++) {
             if (!of[k].is_known)
                 continue;
-            csg_taylor d = csg_taylor_sum(&of[k].piece.f, -1, &of[p].piece.f);
+            csg_taylor d = csg_taylor_sum(&of[k].f, -1, &of[p].f);
             d.value -= turn * beyond;
             double apart = apart_at_most(w, &d);
             if (!isfinite(apart))
                 continue;
             of[0] = of[k];
-            add_apart(w, &of[0].piece.f, apart + BEYOND_ROUNDING * fabs(beyond));
+            add_apart(w, &of[0].f, apart + BEYOND_ROUNDING * fabs(beyond));
             return true;
         }
     }
@@ -430,7 +445,7 @@ static meeting find_meeting(const walker *w, const operand *a, const operand *b,
                             double turn, csg_taylor *d, double *more)
 {
     static const double ROUNDING = 2e-6; /* 1 - cos of an angle that is no more than that */
-    csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &b->piece.f);
+    csg_taylor x = csg_taylor_sum(&a->f, -1, &b->f);
     double reach = csg_taylor_reach(&x, w->radius), least = turn * x.value - reach;
     if (least > CSG_FILLET_PAIR_REACH * r)
         return APART;
@@ -451,11 +466,11 @@ static bool blend_pair(const walker *w, const csg_tape_node *node, const operand
                        const uint32_t pair[2], const csg_taylor *d, double r, double turn,
                        csg_taylor *out)
 {
-    if (!fillet_two(w, &of[pair[0]].piece.f, &of[pair[1]].piece.f, d, r, turn, out))
+    if (!fillet_two(w, &of[pair[0]].f, &of[pair[1]].f, d, r, turn, out))
         return false;
     int ended = find_end(w, node, of, pair, turn, out);
     for (int i = 0; i < 2 && ended > 0; i++) {
-        csg_taylor over = csg_taylor_sum(out, -1, &of[pair[i]].piece.f);
+        csg_taylor over = csg_taylor_sum(out, -1, &of[pair[i]].f);
         if (!(turn * over.value > csg_taylor_reach(&over, w->radius)))
             return false;
     }
@@ -481,7 +496,7 @@ static bool combine_fillet(walker *w, const csg_tape_node *node, bool signs)
     sort_operands(of, count, turn, order);
     const operand *a = &of[order[0]];
     for (uint32_t i = 2; i < count; i++) {
-        csg_taylor x = csg_taylor_sum(&a->piece.f, -1, &of[order[i]].piece.f);
+        csg_taylor x = csg_taylor_sum(&a->f, -1, &of[order[i]].f);
         if (!(turn * x.value - csg_taylor_reach(&x, w->radius) > 2 * r))
             return false;
     }
@@ -490,10 +505,10 @@ static bool combine_fillet(walker *w, const csg_tape_node *node, bool signs)
         return false;
     of[0] = *a;
     if (how == BLENDING) {
-        of[0].piece.f = out;
-        of[0].has_slopes = false;
+        of[0].f = out;
+        of[0].is_leaf = false;
     }
-    add_apart(w, &of[0].piece.f, more);
+    add_apart(w, &of[0].f, more);
     return true;
 }
 
@@ -532,8 +547,8 @@ static bool walk(walker *w)
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op)) {
             operand *o = &w->stack[w->top++];
-            o->is_known = find_leaf(w, node, o); /* a fillet may do without */
-            known = o->is_known || w->with_slopes;
+            o->is_known = find_leaf(w, i, o); /* a fillet may do without */
+            known = o->is_known || w->has_fillets;
         } else if (csg_op_is_round(node->op)) {
             known = combine_round(w, node);
         } else if (csg_op_is_fillet(node->op)) {
@@ -556,13 +571,13 @@ bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg
     w.tape = tape;
     w.c = c;
     w.radius = radius;
-    w.with_slopes = false;
+    w.has_fillets = false;
     w.top = 0;
     for (uint32_t i = 0; i < tape->count; i++)
-        w.with_slopes |= csg_op_is_fillet(tape->nodes[i].op);
+        w.has_fillets |= csg_op_is_fillet(tape->nodes[i].op);
     find_signs(&w);
     if (!walk(&w))
         return false;
-    *out = w.stack[0].piece.f;
+    *out = w.stack[0].f;
     return isfinite(out->value + out->error + out->quartic);
 }

@@ -14,6 +14,20 @@
  * what doubles do. */
 static const double ROUNDING = 0x1p-23;
 
+void csg_taylor_place_points(const float frame[12], const double c[3], csg_smooth_leaf *l)
+{
+    for (int i = 0; i < 3; i++) {
+        csg_smooth *p = &l->p[i];
+        p->f = csg_taylor_constant((double)frame[9 + i]);
+        for (int k = 0; k < 3; k++) {
+            p->f.slope[k] = (double)frame[3 * i + k];
+            p->f.value += p->f.slope[k] * c[k];
+        }
+        for (int k = 0; k < 3 && l->with_slopes; k++)
+            p->g[k] = csg_taylor_constant(p->f.slope[k]);
+    }
+}
+
 void csg_taylor_placed(const float frame[12], csg_smooth_leaf *l)
 {
     csg_smooth p[3];
@@ -102,10 +116,12 @@ bool csg_taylor_warped(const csg_tape *tape, uint32_t warp, const double c[3], c
     const csg_tape_warp *way[CSG_MOST_WARPS];
     uint32_t count = 0;
     *off = 0;
-    memset(l->p, 0, sizeof l->p);
     for (int i = 0; i < 3; i++) {
-        l->p[i].f.value = c[i];
-        l->p[i].f.slope[i] = l->p[i].g[i].value = 1;
+        csg_smooth *p = &l->p[i];
+        p->f = csg_taylor_constant(c[i]);
+        p->f.slope[i] = 1;
+        for (int k = 0; k < 3 && l->with_slopes; k++)
+            p->g[k] = csg_taylor_constant(i == k);
     }
     for (uint32_t w = warp; w; w = tape->warps[w - 1].outer)
         way[count++] = &tape->warps[w - 1];

@@ -13,6 +13,10 @@
  * on the way, or it is not smooth there. */
 bool csg_taylor_warped(const csg_tape *tape, uint32_t warp, const double c[3], csg_smooth_leaf *l,
                        double *off);
+
+/* The same of the ball's own points, placed by the frame as below. */
+void csg_taylor_place_points(const float frame[12], const double c[3], csg_smooth_leaf *l);
+
 /* l->p by an affine map: rows of a matrix, then what is added. */
 void csg_taylor_placed(const float frame[12], csg_smooth_leaf *l);
 

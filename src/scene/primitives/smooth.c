@@ -6,9 +6,19 @@
 csg_smooth csg_smooth_sum(const csg_smooth_leaf *l, const csg_smooth *a, double factor,
                           const csg_smooth *b)
 {
-    csg_smooth out = {.f = csg_taylor_sum(&a->f, factor, &b->f)};
+    csg_smooth out;
+    out.f = csg_taylor_sum(&a->f, factor, &b->f);
     for (int k = 0; k < 3 && l->with_slopes; k++)
         out.g[k] = csg_taylor_sum(&a->g[k], factor, &b->g[k]);
+    return out;
+}
+
+csg_smooth csg_smooth_scaled(const csg_smooth_leaf *l, double factor, const csg_smooth *a)
+{
+    csg_smooth out;
+    out.f = csg_taylor_scaled(&a->f, factor);
+    for (int k = 0; k < 3 && l->with_slopes; k++)
+        out.g[k] = csg_taylor_scaled(&a->g[k], factor);
     return out;
 }
 

@@ -11,7 +11,7 @@
 
 #include "base/taylor.h"
 
-/* A function and, where they are asked for, its derivatives. */
+/* A function and, where they are asked for, its derivatives; else g holds nothing. */
 typedef struct csg_smooth {
     csg_taylor f, g[3];
 } csg_smooth;
@@ -27,12 +27,7 @@ typedef struct csg_smooth_leaf {
 
 csg_smooth csg_smooth_sum(const csg_smooth_leaf *l, const csg_smooth *a, double factor,
                           const csg_smooth *b);
-static inline csg_smooth csg_smooth_scaled(const csg_smooth_leaf *l, double factor,
-                                           const csg_smooth *a)
-{
-    const csg_smooth none = {.f = {.value = 0}};
-    return csg_smooth_sum(l, &none, factor, a);
-}
+csg_smooth csg_smooth_scaled(const csg_smooth_leaf *l, double factor, const csg_smooth *a);
 /* by + factor a. */
 static inline csg_smooth csg_smooth_line(const csg_smooth_leaf *l, double by, double factor,
                                          const csg_smooth *a)
