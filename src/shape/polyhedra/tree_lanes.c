@@ -53,8 +53,8 @@ static inline void try_segment(lane *best, const vector *ap, csg_vec3 edge, cons
 }
 
 /* For the lanes of `counts`; it is farther than what they have from the others. */
-static inline void try_triangle(const csg_tree_triangle *t, double place, const mask *counts,
-                                search *s)
+__attribute__((always_inline)) static inline void
+try_triangle(const csg_tree_triangle *t, double place, const mask *counts, search *s)
 {
     const lane none = {0};
     csg_vec3 normal = csg_vec3_cross(t->ab, t->ac);
