@@ -72,9 +72,11 @@ static void test_planted(void **state)
     }
 }
 
-/* Coordinates among which much lies on one line or in one plane, or nearly. */
-static float draw_coordinate(csg_random *random, int kind)
+/* Coordinates among which much lies on one line or in one plane, or nearly; of kind 3 all do. */
+static float draw_coordinate(csg_random *random, int kind, int axis)
 {
+    if (kind == 3)
+        return axis == 2 ? 0.5f : draw_coordinate(random, 0, axis);
     float whole = (float)(int)csg_random_uniform(random, 0, 4.999);
     float fine = ldexpf(whole, -(int)csg_random_uniform(random, 0, 40));
     return kind == 0 ? whole : kind == 1 ? 0.1f * whole + 0.7f : fine;
@@ -101,7 +103,7 @@ static void test_exact(void **state)
         csg_exact_triangle t[2];
         for (int v = 0; v < 6; v++)
             for (int axis = 0; axis < 3; axis++)
-                positions[v][axis] = draw_coordinate(&random, i / 3 % 3);
+                positions[v][axis] = draw_coordinate(&random, i / 3 % 4, axis);
         for (int k = 0; k < 6; k++) {
             t[k / 3].vertex[k % 3] = indices[k];
             memcpy(t[k / 3].at[k % 3], positions[indices[k]], sizeof positions[0]);

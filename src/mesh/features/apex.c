@@ -116,6 +116,20 @@ static bool is_still(const polygon *p, const apex *a, int sheet, csg_vec3 g)
     return own >= other;
 }
 
+/* |f| is below this, times how far off the apex a place is, where it is said to be of a sheet. */
+static const double SHOWN = 0.3;
+
+/* Whether |f| can be little enough in some place `off` the apex, where it is at least f in q: it
+ * falls no faster than the Lipschitz constant says. */
+static bool may_be_around(const csg_feature_probe *probe, const apex *a, csg_vec3 q, double f,
+                          double off)
+{
+    const csg_tape *tape = &probe->marching->field->tape;
+    double slack = (double)probe->marching->noise + (double)tape->waver;
+    double way = csg_vec3_norm(csg_vec3_sub(q, a->at)) + off;
+    return !(f - 1.01 * (double)tape->lipschitz * way - 2 * slack > SHOWN * off);
+}
+
 /* A sheet that does not show itself towards its corners may do so elsewhere round the apex: where a
  * corner bends inwards, or lies in another cell. False: it does not. */
 static bool look_around(const polygon *p, const apex *a, int sheet, double off,
@@ -134,7 +148,7 @@ static bool look_around(const polygon *p, const apex *a, int sheet, double off,
         x[i] = (float)q.x, y[i] = (float)q.y, z[i] = (float)q.z;
     }
     csg_feature_probe_points(probe, x, y, z, WAYS, f, (float *const[3]){gx, gy, gz});
-    double least = 0.3 * off;
+    double least = SHOWN * off;
     bool found = false;
     for (int i = 0; i < WAYS; i++) {
         csg_plane plane = csg_plane_at(x[i], y[i], z[i], f[i], gx[i], gy[i], gz[i]);
@@ -176,7 +190,9 @@ static void sample_sheets(const csg_apex_walk *walks, int count, double off, boo
         a->lost |= f[i] != f[i];
         bool still = fabs((double)f[i]) <= band && is_still(p, a, sheet[i], plane.g);
         fresh[i] = still ? plane : a->planes[sheet[i]];
-        if (!still && p->creased && f[i] == f[i])
+        if (!still && p->creased && f[i] == f[i] &&
+            may_be_around(probe, a, csg_vec3_make((double)x[i], (double)y[i], (double)z[i]),
+                          fmin(fabs((double)f[i]), band), off))
             still = look_around(p, a, sheet[i], off, probe, &fresh[i]);
         a->lost |= last && !still;
     }

@@ -122,6 +122,30 @@ static bool is_folded(const float *e, const float *f, const float *p, const floa
     return csg_orient_space(e, f, p, q) == 0;
 }
 
+/* In one plane, at a vertex of both: they meet elsewhere if one of the four rays from it along
+ * their sides lies in the other's angle. *known: neither is without area in this view. */
+static bool angles_meet(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k,
+                        bool *known)
+{
+    int axis = axis_of(t);
+    const float *o = s->at[i], *p = s->at[(i + 1) % 3], *q = s->at[(i + 2) % 3];
+    const float *a = t->at[(k + 1) % 3], *b = t->at[(k + 2) % 3];
+    int of_s = axis < 0 ? 0 : csg_orient_along(o, p, q, axis);
+    *known = of_s;
+    if (!*known)
+        return false;
+    int of_t = csg_orient_along(o, a, b, axis);
+    /* counter-clockwise, both */
+    const float *first[2] = {of_s > 0 ? p : q, of_t > 0 ? a : b};
+    const float *last[2] = {of_s > 0 ? q : p, of_t > 0 ? b : a};
+    int ff = csg_orient_along(o, first[0], first[1], axis);
+    int fl = csg_orient_along(o, first[0], last[1], axis);
+    int lf = csg_orient_along(o, last[0], first[1], axis);
+    int ll = csg_orient_along(o, last[0], last[1], axis);
+    return (ff >= 0 && lf <= 0) || (fl >= 0 && ll <= 0) || (ff <= 0 && fl >= 0) ||
+           (lf <= 0 && ll >= 0);
+}
+
 /* At a vertex of both: does what is opposite to it in one meet the other? */
 static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_triangle *t, int k)
 {
@@ -129,6 +153,11 @@ static bool meet_at_vertex(const csg_exact_triangle *s, int i, const csg_exact_t
     int above = side_of(t, p), below = side_of(t, q);
     if (above * below > 0)
         return false;
+    if (!above && !below) {
+        bool known, meet = angles_meet(s, i, t, k, &known);
+        if (known)
+            return meet;
+    }
     if (pierces(p, q, above, below, t))
         return true;
     p = t->at[(k + 1) % 3], q = t->at[(k + 2) % 3];

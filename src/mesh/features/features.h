@@ -171,8 +171,9 @@ typedef struct csg_segment {
     uint16_t loop;     /* of the block's loops at hand */
     uint8_t side;
     uint8_t active;
-    float low, high; /* bracket of the jump, along the segment */
-    float low_gradient[3], high_gradient[3];
+    uint8_t plane, found; /* at one end so far; the bracket is as short as it gets */
+    float low, high;      /* bracket of the jump, along the segment */
+    float low_value, high_value, low_gradient[3], high_gradient[3];
     float jump;  /* 1 - cos of the angle that is left */
     float at[3]; /* the crease near it */
 } csg_segment;

@@ -13,13 +13,15 @@
 #include "mesh/features/possible.h"
 #include "mesh/features/solve.h"
 
-enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10 };
+enum { N = CSG_BLOCK_SAMPLES, E = CSG_BLOCK_EDGE, HALVINGS = 10, BRACKETS = 1 << HALVINGS };
 
 /* 1 - cos of 0.6 degrees, below which ends of a segment count as equal. */
 static const float LEAST_DIFFERENCE = 5.5e-5f;
 /* On a smooth surface both halves of a short segment turn alike and not by much: 1 - cos within
  * 10 % and below that of 12 degrees. */
 static const float ALIKE = 1.1f, LITTLE = 0.02f;
+/* 1 - cos of what floats make of one plane's gradient. */
+static const float SAME = 1e-6f;
 /* 1 - cos of 30 degrees. */
 static const float DETOUR = 0.134f;
 /* Corners of a polygon around a tip look apart by 25 degrees and more. */
@@ -144,7 +146,7 @@ static void halve(csg_feature_room *room, csg_feature_probe *probe)
     uint32_t count = 0;
     for (uint32_t i = 0; i < room->segment_count; i++) {
         csg_segment *s = &room->segments[i];
-        if (!s->active)
+        if (!s->active || s->found)
             continue;
         float p[3];
         point_along(room, s, 0.5f * (s->low + s->high), p);
@@ -152,7 +154,7 @@ static void halve(csg_feature_room *room, csg_feature_probe *probe)
         room->which[count++] = i;
     }
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_feature_probe_points(probe, room->x, room->y, room->z, count, NULL, g);
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
     for (uint32_t i = 0; i < count; i++) {
         csg_segment *s = &room->segments[room->which[i]];
         const float middle[3] = {g[0][i], g[1][i], g[2][i]};
@@ -162,46 +164,106 @@ static void halve(csg_feature_room *room, csg_feature_probe *probe)
         s->active =
             (kept > ALIKE * fminf(low, high) || kept > LITTLE) && kept > CSG_FEATURE_LEAST_JUMP;
         s->jump = kept;
+        s->plane = fminf(low, high) <= SAME;
         memcpy(low >= high ? s->high_gradient : s->low_gradient, middle, sizeof middle);
         *(low >= high ? &s->high : &s->low) = t;
+        *(low >= high ? &s->high_value : &s->low_value) = room->f[i];
     }
 }
 
-/* Both sides of the jumps from segment `first` on, as many as there is room for: two points each.
- * Returns the first segment that is left. */
-static uint32_t beside_jumps(csg_feature_room *room, uint32_t first, uint32_t *count)
+/* Where sheets are plane a segment's jump is known beforehand: where the tangent planes at both
+ * vertices, where f is 0, are as high as each other. Returns the bracket, of 2^HALVINGS, in which
+ * that is; -1: at an end, or nowhere. */
+static int expected_bracket(const csg_feature_room *room, const csg_segment *s)
 {
-    *count = 0;
-    uint32_t i = first;
-    for (; i < room->segment_count && *count + 2 <= CSG_FEATURE_SEGMENTS; i++) {
+    const float *a = room->slots.at[s->from], *b = room->slots.at[s->to];
+    const float *from = room->gradient[s->from], *to = room->gradient[s->to];
+    float rise = 0, fall = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        rise += from[axis] * (b[axis] - a[axis]);
+        fall -= to[axis] * (b[axis] - a[axis]);
+    }
+    float t = fall / (rise + fall) * BRACKETS;
+    return t >= 1 && t < BRACKETS - 1 ? (int)t : -1;
+}
+
+/* Asks both ends of the brackets where jumps are expected. Where each has its vertex's own gradient
+ * the bracket is the one that halving would come to. */
+static void expect_jumps(csg_feature_room *room, csg_feature_probe *probe)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < room->segment_count && count + 2 <= CSG_FEATURE_SEGMENTS; i++) {
         const csg_segment *s = &room->segments[i];
-        for (int end = 0; s->active && end < 2; end++) {
+        int bracket = s->active && s->plane ? expected_bracket(room, s) : -1;
+        for (int end = 0; bracket >= 0 && end < 2; end++) {
             float p[3];
-            point_along(room, s, end ? s->high : s->low, p);
-            room->x[*count] = p[0], room->y[*count] = p[1], room->z[*count] = p[2];
-            room->which[(*count)++] = i;
+            point_along(room, s, (float)(bracket + end) / BRACKETS, p);
+            room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+            room->which[count++] = i;
         }
     }
-    return i;
-}
-
-/* Where the tangent planes on both sides of the jump meet, near it: of those at hand. */
-static void locate_creases(csg_feature_room *room, uint32_t count, csg_feature_probe *probe)
-{
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
     csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
-    for (uint32_t i = 0; i + 1 < count; i += 2) {
+    for (uint32_t i = 0; i < count; i += 2) {
         csg_segment *s = &room->segments[room->which[i]];
-        csg_plane planes[2];
-        for (uint32_t end = 0; end < 2; end++)
-            planes[end] =
-                csg_plane_at(room->x[i + end], room->y[i + end], room->z[i + end], room->f[i + end],
-                             g[0][i + end], g[1][i + end], g[2][i + end]);
-        csg_vec3 at = {(double)room->x[i], (double)room->y[i], (double)room->z[i]};
-        s->active = csg_planes_meet(planes, 2, &at);
-        s->at[0] = (float)at.x, s->at[1] = (float)at.y, s->at[2] = (float)at.z;
-        if (s->active)
-            room->loops[s->loop].crease[s->side] = (int16_t)room->which[i];
+        const float low[3] = {g[0][i], g[1][i], g[2][i]};
+        const float high[3] = {g[0][i + 1], g[1][i + 1], g[2][i + 1]};
+        float jump = 1.0f - csg_feature_cosine(low, high);
+        if (!(1.0f - csg_feature_cosine(s->low_gradient, low) <= SAME) ||
+            !(1.0f - csg_feature_cosine(high, s->high_gradient) <= SAME) ||
+            !(jump > CSG_FEATURE_LEAST_JUMP))
+            continue;
+        int bracket = expected_bracket(room, s);
+        s->low = (float)bracket / BRACKETS;
+        s->high = (float)(bracket + 1) / BRACKETS;
+        s->low_value = room->f[i];
+        s->high_value = room->f[i + 1];
+        s->jump = jump;
+        s->found = 1;
+        memcpy(s->low_gradient, low, sizeof low);
+        memcpy(s->high_gradient, high, sizeof high);
+    }
+}
+
+/* Where the tangent planes on both sides of the jump meet, near it. */
+static void locate_crease(csg_feature_room *room, uint32_t index)
+{
+    csg_segment *s = &room->segments[index];
+    float low[3], high[3];
+    const float *g = s->low_gradient, *h = s->high_gradient;
+    point_along(room, s, s->low, low);
+    point_along(room, s, s->high, high);
+    const csg_plane planes[2] = {
+        csg_plane_at(low[0], low[1], low[2], s->low_value, g[0], g[1], g[2]),
+        csg_plane_at(high[0], high[1], high[2], s->high_value, h[0], h[1], h[2])};
+    csg_vec3 at = {(double)low[0], (double)low[1], (double)low[2]};
+    s->active = csg_planes_meet(planes, 2, &at);
+    s->at[0] = (float)at.x, s->at[1] = (float)at.y, s->at[2] = (float)at.z;
+    if (s->active)
+        room->loops[s->loop].crease[s->side] = (int16_t)index;
+}
+
+/* Fills in what is not known of the ends of the brackets: at vertices, whose values nobody has
+ * asked for and whose gradients may have been corrected. */
+static void ask_vertices(csg_feature_room *room, csg_feature_probe *probe)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < room->segment_count; i++) {
+        const csg_segment *s = &room->segments[i];
+        if (!s->active || (s->low > 0 && s->high < 1))
+            continue;
+        float p[3];
+        point_along(room, s, s->low > 0 ? s->high : s->low, p);
+        room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+        room->which[count++] = i;
+    }
+    float *const g[3] = {room->g[0], room->g[1], room->g[2]};
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
+    for (uint32_t i = 0; i < count; i++) {
+        csg_segment *s = &room->segments[room->which[i]];
+        const float gradient[3] = {g[0][i], g[1][i], g[2][i]};
+        *(s->low > 0 ? &s->high_value : &s->low_value) = room->f[i];
+        memcpy(s->low > 0 ? s->high_gradient : s->low_gradient, gradient, sizeof gradient);
     }
 }
 
@@ -273,7 +335,9 @@ static void find_jumps(const csg_marching *m, const csg_block *block, csg_featur
                        csg_feature_probe *probe)
 {
     collect_loops(m, block, room);
-    for (int step = 0; step < HALVINGS; step++)
+    halve(room, probe);
+    expect_jumps(room, probe);
+    for (int step = 1; step < HALVINGS; step++)
         halve(room, probe);
 }
 
@@ -284,10 +348,10 @@ static void find_creases(const csg_marching *m, const csg_block *block, csg_feat
     if (correct_vertices(room, probe))
         find_jumps(m, block, room, probe);
     drop_detours(room);
-    for (uint32_t next = 0, count; next < room->segment_count;) {
-        next = beside_jumps(room, next, &count);
-        locate_creases(room, count, probe);
-    }
+    ask_vertices(room, probe);
+    for (uint32_t i = 0; i < room->segment_count; i++)
+        if (room->segments[i].active)
+            locate_crease(room, i);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */

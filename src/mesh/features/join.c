@@ -84,17 +84,23 @@ static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables,
     return false;
 }
 
+/* Whether two apexes are not one place. */
+static bool are_apart(const csg_feature_store *store, const csg_feature *f, const csg_feature *g)
+{
+    static const double APART = 1e-3; /* cells */
+    double square = 0;
+    for (int i = 0; i < 3; i++)
+        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
+    return square >= APART * APART * store->cell_size * store->cell_size;
+}
+
 /* Whether both apexes can be joined over side s: both ask the same question. */
 static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
                        int s)
 {
-    static const double APART = 1e-3; /* cells: apexes nearer to each other are one place */
     csg_feature *g = &store->features[f->side[s].beyond];
     int t = f->side[s].beyond_side, s1 = (s + 1) % f->side_count;
-    double square = 0;
-    for (int i = 0; i < 3; i++)
-        square += ((double)f->at[i] - (double)g->at[i]) * ((double)f->at[i] - (double)g->at[i]);
-    if (!(square >= APART * APART * store->cell_size * store->cell_size))
+    if (!are_apart(store, f, g))
         return false;
     /* both halves of the flipped segment look the way their sheets do, as they are */
     if (!f->takes_next && !g->takes_next &&
@@ -125,6 +131,27 @@ bool csg_feature_side_holds(csg_feature_store *store, const csg_cell_tables *tab
         return false;
     return store->features[f->side[s].beyond].state == CSG_FEATURE_UNSOLVED ||
            side_flips(store, tables, f, s);
+}
+
+/* Of what csg_feature_side_holds asks: that which does not depend on the vertex. Sides that are
+ * creased stay so, whatever bend() does with the others. */
+bool csg_feature_may_hold(const csg_feature_store *store, const csg_feature *f, int corner)
+{
+    for (int s = 0; s < f->side_count; s++) {
+        bool is_far = s != corner && (s + 1) % f->side_count != corner;
+        if (!(f->creased >> s & 1))
+            continue;
+        if (!(f->flipped >> s & 1)) {
+            if (is_far && !stays_outward(f, s))
+                return false;
+            continue;
+        }
+        const csg_feature *g = &store->features[f->side[s].beyond];
+        if (is_joined_already(f, s) ||
+            (g->state != CSG_FEATURE_UNSOLVED && !are_apart(store, f, g)))
+            return false;
+    }
+    return true;
 }
 
 static void set_bent(csg_feature *f, int s, bool bent)

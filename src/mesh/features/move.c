@@ -126,18 +126,21 @@ static bool begin_try(const csg_feature *f, const surroundings *q, const csg_fea
 }
 
 bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
-                         csg_feature_probe *probe)
+                         csg_feature_probe *probe, bool *is_in_vain)
 {
     enum { MOST_TRIES = 1, MOST_NODES = 512 /* the whole tape is asked */ };
     csg_feature *f = &store->features[index];
     csg_feature_whole kept, likely;
     csg_feature *before = &kept.feature, *best = &likely.feature;
+    if (is_in_vain)
+        *is_in_vain = false;
     if (!f->creased || f->tries == MOST_TRIES || probe->marching->field->tape.count > MOST_NODES)
         return false;
     csg_feature_keep(&kept, f);
     before->tries++;
     csg_feature_keep(&likely, before);
     surroundings q = look_beside(store, f);
+    bool any = false;
     for (int n = 0;; n++) {
         csg_feature_polygon p;
         csg_apex a = {.lost = false};
@@ -147,6 +150,7 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
         csg_feature_copy(f, before);
         f->flipped = 0;
         bool found = csg_apex_find(&p, &a, probe, f);
+        any = any || found;
         f->flipped = before->flipped;
         csg_feature_agree(store, f);
         if (found && csg_feature_holds(store, tables, f))
@@ -158,5 +162,7 @@ bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables
     }
     csg_feature_copy(f, best);
     csg_feature_agree(store, f);
+    if (is_in_vain)
+        *is_in_vain = !any;
     return false;
 }

@@ -13,8 +13,8 @@ bool csg_feature_move(const csg_feature_store *store, uint32_t index, csg_featur
 
 /* Looks for a place where the feature holds (join.h), from what its neighbours know. False:
  * there is none, nothing has changed, but that an apex that was not found goes to a likely place.
- */
+ * *is_in_vain (NULL: not told): no apex was found in any; so it is while no vertex moves. */
 bool csg_feature_replace(csg_feature_store *store, const csg_cell_tables *tables, uint32_t index,
-                         csg_feature_probe *probe);
+                         csg_feature_probe *probe, bool *is_in_vain);
 
 #endif

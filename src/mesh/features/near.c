@@ -4,7 +4,6 @@
 #include "mesh/features/near.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "mesh/features/cell.h"
@@ -22,7 +21,7 @@ typedef struct view {
     int first[3];
 } view;
 
-enum { VIEW_CELLS = 64, VIEW_BEFORE = 24, ITSELF = 13 };
+enum { VIEW_CELLS = CSG_NEAR_VIEW, VIEW_BEFORE = 24, ITSELF = 13 };
 
 static view view_of(const csg_near *near, csg_near_room *room, size_t block)
 {
@@ -216,9 +215,18 @@ static bool cells_of(const view *v, const csg_feature_block *block, const csg_ne
     return !stays;
 }
 
+/* Own triangles come first; others are of interest where these are. */
+static bool is_of_interest(csg_near_room *room, uint32_t cell, bool own)
+{
+    uint64_t *word = &room->own_cells[cell / 64], bit = (uint64_t)1 << cell % 64;
+    *word |= own ? bit : 0;
+    return *word & bit;
+}
+
 static bool enter_cells(const view *v, const int low[3], const int high[3], uint32_t triangle)
 {
     csg_near_room *room = v->room;
+    bool own = room->triangles[triangle].own;
     int from[3], to[3];
     for (int axis = 0; axis < 3; axis++) {
         from[axis] = low[axis] > v->first[axis] ? low[axis] - v->first[axis] : 0;
@@ -228,11 +236,13 @@ static bool enter_cells(const view *v, const int low[3], const int high[3], uint
     for (int z = from[2]; z <= to[2]; z++)
         for (int y = from[1]; y <= to[1]; y++)
             for (int x = from[0]; x <= to[0]; x++) {
+                uint32_t cell = (uint32_t)((z * VIEW_CELLS + y) * VIEW_CELLS + x);
+                if (!is_of_interest(room, cell, own))
+                    continue;
                 if (!csg_memory_reserve(v->near->memory, (void **)&room->places,
                                         &room->place_capacity, room->place_count + 1,
                                         sizeof *room->places))
                     return false;
-                uint32_t cell = (uint32_t)((z * VIEW_CELLS + y) * VIEW_CELLS + x);
                 room->places[room->place_count++] = (uint64_t)cell << 32 | triangle;
             }
     return true;
@@ -313,10 +323,30 @@ static bool add_block(const view *v, const csg_feature_block *block, const csg_n
     return true;
 }
 
-static int compare_places(const void *a, const void *b)
+/* By cells. Triangles were entered in their order, and stay in it. False: out of memory. */
+static bool sort_places(const view *v)
 {
-    uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-    return (p > q) - (p < q);
+    enum { DIGIT_BITS = 9, DIGITS = 1 << DIGIT_BITS, PASSES = 2 /* VIEW_CELLS^3 is 2^18 */ };
+    csg_near_room *room = v->room;
+    size_t count = room->place_count;
+    if (!csg_memory_reserve(v->near->memory, (void **)&room->sorted, &room->sorted_capacity, count,
+                            sizeof *room->sorted))
+        return false;
+    uint64_t *from = room->places, *to = room->sorted;
+    for (int pass = 0; pass < PASSES; pass++) {
+        size_t starts[DIGITS + 1] = {0};
+        int shift = 32 + pass * DIGIT_BITS;
+        for (size_t i = 0; i < count; i++)
+            starts[(from[i] >> shift) % DIGITS + 1]++;
+        for (size_t i = 0; i < DIGITS; i++)
+            starts[i + 1] += starts[i];
+        for (size_t i = 0; i < count; i++)
+            to[starts[(from[i] >> shift) % DIGITS]++] = from[i];
+        uint64_t *swapped = from;
+        from = to;
+        to = swapped;
+    }
+    return true;
 }
 
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
@@ -324,6 +354,7 @@ bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
     view v = view_of(near, room, index);
     csg_near_box within = NOWHERE;
     room->count = room->place_count = 0;
+    memset(room->own_cells, 0, sizeof room->own_cells);
     if (!add_block(&v, v.block, NULL))
         return false;
     for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++)
@@ -334,9 +365,7 @@ bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
         if (other && !add_block(&v, other, &within))
             return false;
     }
-    if (room->place_count)
-        qsort(room->places, room->place_count, sizeof *room->places, compare_places);
-    return true;
+    return !room->place_count || sort_places(&v);
 }
 
 /* ---- smooth polygons ---------------------------------------------------------------------------
@@ -466,5 +495,6 @@ void csg_near_room_release(csg_near_room *room, csg_memory *memory)
 {
     csg_memory_release(memory, room->triangles, room->capacity * sizeof *room->triangles);
     csg_memory_release(memory, room->places, room->place_capacity * sizeof *room->places);
+    csg_memory_release(memory, room->sorted, room->sorted_capacity * sizeof *room->sorted);
     *room = (csg_near_room){0};
 }

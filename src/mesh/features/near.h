@@ -24,14 +24,18 @@ typedef struct csg_near_box {
     float low[3], high[3];
 } csg_near_box;
 
+enum { CSG_NEAR_VIEW = 64 }; /* cells along each axis that a search sees: eight blocks */
+
 /* One thread's room. */
 typedef struct csg_near_room {
     csg_edges *edges; /* lent, as is scratch */
     float *scratch;
     size_t scratch_floats;
     csg_near_triangle *triangles; /* at hand */
-    uint64_t *places;             /* cell and triangle, sorted */
-    size_t count, capacity, place_count, place_capacity;
+    uint64_t *places, *sorted;    /* cell and triangle, by cells; room for sorting them */
+    size_t count, capacity, place_count, place_capacity, sorted_capacity;
+    uint64_t own_cells[CSG_NEAR_VIEW * CSG_NEAR_VIEW * CSG_NEAR_VIEW / 64]; /* a bit each: the
+                                                                   block has triangles there */
     uint64_t evaluations;
 } csg_near_room;
 

@@ -29,15 +29,19 @@ static bool solve_late(csg_feature_store *store, const csg_cell_tables *tables, 
                        csg_feature_probe *probe)
 {
     csg_feature *f = &store->features[index];
-    if (csg_feature_replace(store, tables, index, probe))
+    bool is_in_vain;
+    if (csg_feature_replace(store, tables, index, probe, &is_in_vain))
         return true;
     for (int s = 0; s < f->side_count; s++) {
         csg_feature *g = f->flipped >> s & 1 ? &store->features[f->side[s].beyond] : NULL;
-        if (g && g->state != CSG_FEATURE_UNSOLVED && !csg_feature_holds(store, tables, g))
-            csg_feature_shift(store, tables, f->side[s].beyond, CSG_FEATURE_NONE, probe);
+        if (g && g->state != CSG_FEATURE_UNSOLVED && !csg_feature_holds(store, tables, g) &&
+            csg_feature_shift(store, tables, f->side[s].beyond, CSG_FEATURE_NONE, probe))
+            is_in_vain = false;
     }
+    if (is_in_vain)
+        return false;
     f->tries = 0;
-    return csg_feature_replace(store, tables, index, probe);
+    return csg_feature_replace(store, tables, index, probe, NULL);
 }
 
 size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *tables,
@@ -52,7 +56,7 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
     for (uint32_t i = 0; i < store->count; i++) {
         csg_feature *f = &store->features[i];
         if (f->creased && !csg_feature_unfolds(store, tables, f)) {
-            if (!csg_feature_replace(store, tables, i, probe) &&
+            if (!csg_feature_replace(store, tables, i, probe, NULL) &&
                 !csg_feature_shift(store, tables, i, CSG_FEATURE_NONE, probe))
                 csg_feature_demote(store, tables, f);
             changed++;
@@ -62,8 +66,9 @@ size_t csg_feature_settle(csg_feature_store *store, const csg_cell_tables *table
                 continue;
             uint32_t other = f->flipped >> s & 1 ? f->side[s].beyond : CSG_FEATURE_NONE;
             changed++;
-            if (!csg_feature_replace(store, tables, i, probe) &&
-                (other == CSG_FEATURE_NONE || !csg_feature_replace(store, tables, other, probe)) &&
+            if (!csg_feature_replace(store, tables, i, probe, NULL) &&
+                (other == CSG_FEATURE_NONE ||
+                 !csg_feature_replace(store, tables, other, probe, NULL)) &&
                 !csg_feature_shift(store, tables, i, other, probe))
                 give_up(store, tables, f,
                         other == CSG_FEATURE_NONE ? NULL : &store->features[other]);

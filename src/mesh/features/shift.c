@@ -179,12 +179,22 @@ static csg_vec3 place_of(int i, csg_vec3 vertex, csg_vec3 apex, csg_vec3 normal,
     return csg_vec3_add(at, csg_vec3_scale(v, reach * way[i % WAYS][1]));
 }
 
+/* Whether all four may hold with the vertex elsewhere. */
+static bool ring_may_hold(const csg_feature_store *store, const ring *r)
+{
+    for (int k = 0; k < AROUND; k++)
+        if (r->f[k]->state != CSG_FEATURE_BARE && r->f[k]->state != CSG_FEATURE_UNSOLVED &&
+            !csg_feature_may_hold(store, r->f[k], r->corner[k]))
+            return false;
+    return true;
+}
+
 /* Tries the places of one ring. */
 static bool shift_corner(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f,
                          int corner, int around, csg_feature_probe *probe)
 {
     ring r;
-    if (!find_ring(store, f, corner, &r))
+    if (!find_ring(store, f, corner, &r) || !ring_may_hold(store, &r))
         return false;
     csg_feature_whole before[AROUND];
     float from[3], to[3];

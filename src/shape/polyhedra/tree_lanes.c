@@ -52,7 +52,9 @@ static inline void try_segment(lane *best, const vector *ap, csg_vec3 edge, cons
     *best = CHOOSE(is_nearer, squared, *best);
 }
 
-static inline void try_triangle(const csg_tree_triangle *t, double place, search *s)
+/* For the lanes of `counts`; it is farther than what they have from the others. */
+__attribute__((always_inline)) static inline void
+try_triangle(const csg_tree_triangle *t, double place, const mask *counts, search *s)
 {
     const lane none = {0};
     csg_vec3 normal = csg_vec3_cross(t->ab, t->ac);
@@ -62,8 +64,8 @@ static inline void try_triangle(const csg_tree_triangle *t, double place, search
                    normal.x * ap.y - normal.y * ap.x};
     lane u = DOT(side, t->ac), v = -DOT(side, t->ab);
     mask is_needle = (mask){0} - (int64_t)(t->is_needle != 0);
-    mask beyond[3] = {(u < none) | is_needle, (v < none) | is_needle,
-                      ~(u + v <= none + w) | is_needle};
+    mask beyond[3] = {*counts & ((u < none) | is_needle), *counts & ((v < none) | is_needle),
+                      *counts & (~(u + v <= none + w) | is_needle)};
     lane height = DOT(ap, normal);
     lane squared = height * height / w;
     mask is_beside = beyond[0] | beyond[1] | beyond[2];
@@ -78,7 +80,8 @@ static inline void try_triangle(const csg_tree_triangle *t, double place, search
             try_segment(&beside, &bp, csg_vec3_sub(t->ac, t->ab), &beyond[2]);
         squared = CHOOSE(is_beside, beside, squared);
     }
-    mask is_nearer = (squared < s->squared) | ((squared == s->squared) & (none + place < s->place));
+    mask is_nearer =
+        *counts & ((squared < s->squared) | ((squared == s->squared) & (none + place < s->place)));
     s->squared = CHOOSE(is_nearer, squared, s->squared);
     s->place = CHOOSE(is_nearer, none + place, s->place);
 }
@@ -91,9 +94,10 @@ static inline void set_limit(search *s)
     s->limit = __builtin_convertvector(s->squared, narrow) * CSG_TREE_SLACK;
 }
 
-/* Whether the rectangle around a triangle is near enough for some point: what least_distances in
+/* For which points the rectangle around a triangle is near enough: what least_distances in
  * tree_nearest.c is for four triangles. */
-static inline bool is_near(const csg_tree_leaf *leaf, uint32_t slot, const search *s)
+static inline bool is_near(const csg_tree_leaf *leaf, uint32_t slot, const search *s,
+                           narrow_mask *near)
 {
     narrow away[3], sum = {0};
     for (int k = 0; k < 3; k++)
@@ -106,8 +110,8 @@ static inline bool is_near(const csg_tree_leaf *leaf, uint32_t slot, const searc
         along = POSITIVE(over) + POSITIVE(under); /* one of them is 0 */
         sum += along * along;
     }
-    narrow_mask near = sum <= s->limit;
-    return is_some(&near);
+    *near = sum <= s->limit;
+    return is_some(near);
 }
 
 static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, uint32_t hint,
@@ -115,9 +119,11 @@ static inline void try_leaf(const csg_tree *tree, const csg_tree_leaf *leaf, uin
 {
     for (uint32_t slot = 0; slot < leaf->count; slot++) {
         uint32_t place = leaf->first + slot;
-        if (place == hint || !is_near(leaf, slot, s))
+        narrow_mask near;
+        if (place == hint || !is_near(leaf, slot, s, &near))
             continue;
-        try_triangle(&tree->triangles[place], (double)place, s);
+        const mask counts = __builtin_convertvector(near, mask);
+        try_triangle(&tree->triangles[place], (double)place, &counts, s);
         set_limit(s);
     }
 }
@@ -131,7 +137,7 @@ typedef struct entry {
     uint32_t child;
 } entry;
 
-/* As in tree_nearest.c. */
+/* As in tree_nearest.c, whose 220 leave room for four of each of CSG_SHAPE_MOST_NEAR parts. */
 enum { STACK = 256 };
 
 typedef struct waiting {
@@ -159,13 +165,10 @@ static inline float rank_of(const narrow *squared)
 
 /* Pushes the children below an item that may hold something as near as the limit of some point,
  * the nearest last. */
-static inline void push_near(const csg_tree_node *node, bool leaves_only, const search *s,
-                             waiting *w)
+static inline void push_near(const csg_tree_node *node, const search *s, waiting *w)
 {
     size_t bottom = w->depth;
     for (uint32_t slot = 0; slot < 4; slot++) {
-        if (leaves_only && !(node->children[slot] & CSG_TREE_LEAF))
-            continue;
         narrow squared;
         measure_box(node, slot, s, &squared);
         narrow_mask near = squared <= s->limit;
@@ -180,6 +183,37 @@ static inline void push_near(const csg_tree_node *node, bool leaves_only, const 
     }
 }
 
+/* Pushes what may be near enough of all items, and brings the nearest to the top: once it has been
+ * looked into, most of the others are too far away. */
+static inline void push_items(const csg_tree *tree, const uint32_t *items, uint32_t count,
+                              const search *s, waiting *w)
+{
+    size_t nearest = 0;
+    float least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_tree_node *node = &tree->nodes[items[i] & ~CSG_TREE_LEAVES_ONLY];
+        for (uint32_t slot = 0; slot < 4; slot++) {
+            if (items[i] & CSG_TREE_LEAVES_ONLY && !(node->children[slot] & CSG_TREE_LEAF))
+                continue;
+            narrow squared;
+            measure_box(node, slot, s, &squared);
+            narrow_mask near = squared <= s->limit;
+            if (!is_some(&near))
+                continue;
+            float rank = rank_of(&squared);
+            nearest = rank < least ? w->depth : nearest;
+            least = rank < least ? rank : least;
+            w->entries[w->depth].squared = squared;
+            w->entries[w->depth++].child = node->children[slot];
+        }
+    }
+    if (w->depth) {
+        entry top = w->entries[nearest];
+        w->entries[nearest] = w->entries[w->depth - 1];
+        w->entries[w->depth - 1] = top;
+    }
+}
+
 static inline void search_tree(const csg_tree *tree, uint32_t hint, search *s, waiting *w)
 {
     while (w->depth) {
@@ -190,13 +224,14 @@ static inline void search_tree(const csg_tree *tree, uint32_t hint, search *s, w
         if (next->child & CSG_TREE_LEAF)
             try_leaf(tree, &tree->leaves[next->child & ~CSG_TREE_LEAF], hint, s);
         else
-            push_near(&tree->nodes[next->child], false, s, w);
+            push_near(&tree->nodes[next->child], s, w);
     }
 }
 
 static void search_some(const csg_tree *tree, const uint32_t *items, uint32_t count,
                         const csg_vec3 *points, uint32_t hint, csg_triangle_hit *hits)
 {
+    const mask all = ~(mask){0};
     search s;
     waiting w;
     double at[3][LANES];
@@ -217,14 +252,11 @@ static void search_some(const csg_tree *tree, const uint32_t *items, uint32_t co
     s.squared = s.x * 0 + INFINITY;
     s.place = s.x * 0;
     if (hint != CSG_TREE_NO_HINT)
-        try_triangle(&tree->triangles[hint], (double)hint, &s);
+        try_triangle(&tree->triangles[hint], (double)hint, &all, &s);
     set_limit(&s);
     w.depth = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const csg_tree_node *node = &tree->nodes[items[i] & ~CSG_TREE_LEAVES_ONLY];
-        push_near(node, items[i] & CSG_TREE_LEAVES_ONLY, &s, &w);
-        search_tree(tree, hint, &s, &w);
-    }
+    push_items(tree, items, count, &s, &w);
+    search_tree(tree, hint, &s, &w);
     for (int l = 0; l < LANES; l++)
         hits[l] = (csg_triangle_hit){s.squared[l], (uint32_t)s.place[l], 0};
 }
