@@ -148,7 +148,7 @@ class Certify(cli.CliTest):
     def test_loose_bounds(self):
         """Of a field with steps and a constant far too large nothing is claimed, and nothing is kept silent."""
         self.write("loose.txt", "field(function (p) 1 - norm(p) + 0.000001 * floor(50 * p.x), "
-                                "bounds = [[-2, -2, -2], [2, 2, 2]], lipschitz = 60);\n")
+                                "bounds = [[-2, -2, -2], [2, 2, 2]], lipschitz = 2000);\n")
         result = self.run_in("loose.txt", "--certify", "-r", "8", "--stats")
         self.assert_status(result, 0)
         certify = json.loads(result.stdout)["certify"]
