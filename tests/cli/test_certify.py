@@ -38,7 +38,7 @@ PLANTED = {
         "linear_extrude(4) union() { square([20, 8]); translate([5.03, 8]) square([0.05, 7]); }\n", 1, "part",
         (0.03, 0.06)),
     "disc of a combination": (
-        "combine(function (a, b) max(a, b)) { sphere(8); translate([0, 0, 9.53]) cylinder(r = 5, h = 0.03); }\n", 1,
+        "combine(function (a, b) max(max(a, b), a)) { sphere(8); translate([0, 0, 9.53]) cylinder(r = 5, h = 0.03); }\n", 1,
         "part", (0.02, 0.04)),
 }
 # Thick everywhere: nothing may be reported of them.
