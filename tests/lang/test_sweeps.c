@@ -458,10 +458,18 @@ static csgm_status attempt(bench *poor)
     return bench_compile_bytes(poor, scene, sizeof scene - 1, NULL);
 }
 
+static csgm_status attempt_elbows(bench *poor)
+{
+    static const char scene[] = "sweep([[0,0,0], [9,0,0], [4,4,0], [4,9,0]], round = 1)"
+                                " square(1, center = true);";
+    return bench_compile_bytes(poor, scene, sizeof scene - 1, NULL);
+}
+
 static void any_allocation_may_fail(void **state)
 {
     (void)state;
     assert_true(bench_fail_every(attempt, 60, 12) > 60);
+    assert_true(bench_fail_every(attempt_elbows, 60, 12) > 60);
 }
 
 int main(int argc, char **argv)

@@ -46,7 +46,7 @@ NO_WORDS = {
     "union(blend = 1) { cube(3); sphere(2); }": "blends",
     "difference(blend = chamfer(1)) { cube(3); sphere(2); }": "blends",
     "field(function (p) 1 - norm(p));": "solids by a formula",
-    "combine(function (a, b) max(a, b)) { cube(3); sphere(2); }": "solids by a formula",
+    "combine(function (a, b) (a + b) / 2) { cube(3); sphere(2); }": "solids by a formula",
     "soft() torus(3, 1);": "soft solids",
     "tube([[0, 0, 0], [5, 0, 0], [5, 5, 0]], 1, degree = 2);": "tubes along curves",
     "superellipsoid(3, 4);": "superellipsoids",

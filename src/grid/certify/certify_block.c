@@ -322,15 +322,26 @@ static bool is_slow_way(const csg_tape *tape, uint32_t warp)
     return slow;
 }
 
+/* Whether a formula has more steps than a primitive. */
+static bool is_long_formula(const csg_tape *tape, const csg_tape_node *node)
+{
+    enum { SHORT = 12 };
+    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
+    return tape->formulas[(uint32_t)tape->parameters[node->parameters + (uint32_t)own]].count >
+           SHORT;
+}
+
 /* Leaves that are slow to evaluate. */
 static uint32_t slow_leaves(const csg_certify_worker *w, const csg_certify_cube *cube)
 {
+    const csg_tape *tape = w->reach.tape;
     uint32_t count = 0;
     for (uint32_t i = 0; i < cube->node_count; i++) {
         const csg_tape_node *node = &cube->nodes[i];
-        if (csg_op_is_leaf(node->op) && (node->op == CSG_OP_SHAPE || node->op == CSG_OP_FIELD ||
-                                         is_slow_way(w->reach.tape, node->warp)))
-            count++;
+        bool is_slow = node->op == CSG_OP_SHAPE ||
+                       (node->op == CSG_OP_FIELD && is_long_formula(tape, node)) ||
+                       (csg_op_is_leaf(node->op) && is_slow_way(tape, node->warp));
+        count += is_slow;
     }
     return count;
 }
