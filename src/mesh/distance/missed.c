@@ -64,11 +64,16 @@ typedef struct walk {
     atomic_bool out_of_memory;
 } walk;
 
+/* A place of the surface, and the gradient there. */
+typedef struct place {
+    csg_vec3 at, slope;
+} place;
+
 /* A cube with the tape that holds in it and around it. */
 typedef struct cube {
     csg_vec3 c;
     double half, around, value; /* in the middle, where the cube is small enough for one sheet */
-    csg_vec3 surface;           /* a place of it in the cube or a little around, if there is one */
+    place surface;              /* in the cube or a little around, if there is one */
     csg_tape tape;
     double steepest, doubt; /* how fast the field changes at most along the axes, and its rounding
                                there: in a cube that this one is a part of */
@@ -79,12 +84,6 @@ typedef struct cube {
 
 /* ---- the field in a cube -----------------------------------------------------------------------
  */
-
-static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
-{
-    return csg_tape_gradient_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
-                                w->scratch_floats);
-}
 
 /* Values this small are zero. */
 static double noise_of(const walk *w)
@@ -173,11 +172,11 @@ static double least_depth(const walk *w)
 /* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
  * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
  * would be none. */
-static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
+static bool is_border(const walk *w, worker *s, const cube *q, const place *at_zero)
 {
     enum { WAYS = 6, PLACES = 2 + RINGS * WAYS, PADDED = PLACES + CSG_LANES };
     float at[3][PADDED] = {{0}}, f[PADDED] = {0};
-    csg_vec3 uphill = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
+    csg_vec3 p = at_zero->at, uphill = csg_vec3_normalize(at_zero->slope);
     double noise = noise_of(w), reach = 0.25 * w->error;
     for (int i = 0; i < PLACES; i++) {
         int ring = (i - 2) / WAYS, way = (i - 2) % WAYS / 2;
@@ -276,7 +275,7 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
 
 static bool is_surface_near(const walk *w, const cube *q)
 {
-    return q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface, w->error);
+    return q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface.at, w->error);
 }
 
 /* ---- where a sheet turns -----------------------------------------------------------------------
@@ -332,7 +331,7 @@ enum { TURNS = 5 };
 
 /* Places where a sheet turns within the cube: along the line in which tangent planes of both faces
  * meet, from there to the surface. */
-static uint32_t find_turns(const walk *w, worker *s, const cube *q, csg_vec3 out[TURNS])
+static uint32_t find_turns(const walk *w, worker *s, const cube *q, place out[TURNS])
 {
     static const double LEAST_SQUARE = 0.05; /* of the sine */
     csg_plane faces[2] = {{{0, 0, 0}, 0}};
@@ -356,7 +355,7 @@ static uint32_t find_turns(const walk *w, worker *s, const cube *q, csg_vec3 out
     find_surfaces(w, s, &q->tape, reach_of(q), &from, is_found);
     for (uint32_t i = 0; i < from.count; i++)
         if (is_found[i])
-            out[count++] = from.at[i];
+            out[count++] = (place){from.at[i], from.slope[i]};
     return count;
 }
 
@@ -386,12 +385,12 @@ static content content_of(const walk *w, worker *s, cube *q)
 static verdict settle_turns(const walk *w, worker *s, const cube *q)
 {
     static const double CLOSE = 0.5; /* of the error */
-    csg_vec3 places[TURNS];
+    place places[TURNS];
     uint32_t triangle, count = q->is_bent ? find_turns(w, s, q, places) : 0;
     for (uint32_t i = 0; i < count; i++) {
-        csg_vec3 p = places[i];
+        csg_vec3 p = places[i].at;
         if (csg_triangle_tree_is_near(&w->remesh->tree, p, CLOSE * w->error) ||
-            !is_border(w, s, q, p))
+            !is_border(w, s, q, &places[i]))
             continue;
         if (q->half > w->error)
             return DIVIDE;
@@ -413,7 +412,7 @@ static bool is_empty(const walk *w, const cube *q)
 static verdict settle(const walk *w, worker *s, cube *q)
 {
     uint32_t triangle;
-    csg_vec3 p = q->surface;
+    csg_vec3 p = q->surface.at;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
     if (is_empty(w, q))
@@ -431,7 +430,7 @@ static verdict settle(const walk *w, worker *s, cube *q)
         return ends ? SETTLED : DIVIDE;
     if (sheet && is_surface_near(w, q))
         return settle_turns(w, s, q);
-    if (!is_border(w, s, q, p))
+    if (!is_border(w, s, q, &q->surface))
         return ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
@@ -487,7 +486,7 @@ static void find_surfaces_of_children(const walk *w, worker *s, const cube *pare
     find_surfaces(w, s, &parent->tape, reach_of(&children[0]), &from, is_found);
     for (uint32_t i = 0; i < count; i++) {
         children[i].has_surface = is_found[i];
-        children[i].surface = from.at[i];
+        children[i].surface = (place){from.at[i], from.slope[i]};
     }
 }
 

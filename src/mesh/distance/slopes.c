@@ -38,7 +38,8 @@ static double span_of(const walker *w, const double at[3], double spread)
     double most = 0;
     for (int i = 0; i < 3; i++) {
         csg_vec3 to = csg_vec3_sub(r->triangle[i], r->c);
-        most = fmax(most, fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z));
+        double change = fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z);
+        most = change > most ? change : most;
     }
     return most + r->around * norm_of(at) + r->half * (fabs(at[0]) + fabs(at[1]) + fabs(at[2])) +
            spread * w->radius;
@@ -314,7 +315,8 @@ double csg_slopes_round(const double *values, uint32_t count, double w)
     for (int step = 0; step < STEPS; step++) {
         double squares = -w * w, slope = 0;
         for (uint32_t i = 0; i < count; i++) {
-            double u = fmax(values[i] - f + w, 0);
+            double u = values[i] - f + w;
+            u = u > 0 ? u : 0; /* fmax is a call */
             squares += u * u;
             slope += 2 * u;
         }
