@@ -195,20 +195,6 @@ static bool is_border(const walk *w, worker *s, const cube *q, const place *at_z
     return inside && outside;
 }
 
-/* How fast the field changes at most, by the largest way along an axis. */
-static double steepest_of(const csg_gradients *gradients)
-{
-    double most = 0;
-    if (!(gradients->stray < INFINITY))
-        return INFINITY;
-    for (uint32_t i = 0; i < gradients->balls.count; i++) {
-        const csg_cone_ball *ball = &gradients->balls.items[i];
-        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
-        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
-    }
-    return most;
-}
-
 /* Whether the field is too far from zero in the middle to be it anywhere in the cube. */
 static bool is_far_from_zero(const walk *w, const cube *q)
 {
@@ -369,7 +355,7 @@ static content content_of(const walk *w, worker *s, cube *q)
     if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, &all, s->scratch,
                             w->scratch_floats, &gradients))
         return ANYTHING;
-    q->steepest = fmin(q->steepest, steepest_of(&gradients));
+    q->steepest = fmin(q->steepest, csg_gradients_steepest(&gradients));
     q->doubt = fmax(q->doubt, gradients.doubt);
     if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
         gradients.most < least_depth(w))
