@@ -87,6 +87,10 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
         if (csg_vec3_norm(g) > found->longest + 1e-3)
             fail_msg("a slope of %g, not %g at most, near (%g, %g, %g) within %g", csg_vec3_norm(g),
                      found->longest, at.x, at.y, at.z, radius);
+        double parts = fabs(g.x) + fabs(g.y) + fabs(g.z);
+        if (parts > csg_gradients_steepest(found) + 1e-3)
+            fail_msg("parts of a slope add up to %g, not %g, near (%g, %g, %g) within %g", parts,
+                     csg_gradients_steepest(found), at.x, at.y, at.z, radius);
         if (csg_vec3_norm(csg_vec3_sub(g, first)) > 2 * found->stray + 1e-3)
             fail_msg("slopes %g apart, not %g from one, near (%g, %g, %g) within %g",
                      csg_vec3_norm(csg_vec3_sub(g, first)), found->stray, at.x, at.y, at.z, radius);

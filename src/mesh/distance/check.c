@@ -77,48 +77,82 @@ static double slack_of(const proof *p)
     return 4 * (double)p->remesh->probe.noise;
 }
 
-/* By how much f has the sign that it should have, at least, at the corners of cuts^2 small
- * triangles that the piece is cut into, a step away from it: inside where turn is 1, else outside.
- */
-static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 step, double turn,
-                        int cuts)
+/* Places at which values are asked for, all at once. */
+typedef struct places {
+    float at[3][2 * MOST_PLACES];
+    size_t count, outside; /* those from here on are on the outer side */
+} places;
+
+/* The corners of cuts^2 small triangles that the piece is cut into, a step away from it. */
+static void add_corners(places *to, const csg_vec3 v[3], csg_vec3 step, int cuts)
 {
-    float at[3][MOST_PLACES] = {{0}}, f[MOST_PLACES] = {0};
-    csg_vec3 first = csg_vec3_add(v[0], csg_vec3_scale(step, turn)), q;
-    double least = INFINITY;
-    size_t n = 0;
+    csg_vec3 first = csg_vec3_add(v[0], step), q;
     for (int i = 0; i <= cuts; i++)
-        for (int k = 0; i + k <= cuts; k++, n++) {
+        for (int k = 0; i + k <= cuts; k++) {
             q = csg_vec3_add(csg_vec3_scale(csg_vec3_sub(v[1], v[0]), (double)i / cuts),
                              csg_vec3_scale(csg_vec3_sub(v[2], v[0]), (double)k / cuts));
             q = csg_vec3_add(first, q);
-            at[0][n] = (float)q.x, at[1][n] = (float)q.y, at[2][n] = (float)q.z;
+            size_t n = to->count++;
+            to->at[0][n] = (float)q.x, to->at[1][n] = (float)q.y, to->at[2][n] = (float)q.z;
         }
-    p->remesh->probe.marching->kernel->values(&s->tape, at[0], at[1], at[2], n, f, s->scratch,
-                                              p->scratch_floats);
-    for (size_t i = 0; i < n; i++) {
-        if (!(f[i] == f[i]))
+}
+
+/* By how much f has the sign that it should have there, at least. */
+static double margin_at(const proof *p, settler *s, places *of)
+{
+    float f[2 * MOST_PLACES];
+    double least = INFINITY;
+    for (size_t n = of->count; n % CSG_LANES; n++)
+        of->at[0][n] = of->at[1][n] = of->at[2][n] = 0;
+    p->remesh->probe.marching->kernel->values(&s->tape, of->at[0], of->at[1], of->at[2], of->count,
+                                              f, s->scratch, p->scratch_floats);
+    for (size_t i = 0; i < of->count; i++) {
+        double inside = i < of->outside ? (double)f[i] : -(double)f[i];
+        if (!(inside == inside))
             return -INFINITY; /* no value, no proof */
-        least = fmin(least, turn * (double)f[i]);
+        least = inside < least ? inside : least;
     }
     return least;
 }
 
+/* The same on both sides of the piece, a step inwards and a step back. Both are asked for at once
+ * where they are few, since a walk over the tape costs the same for sixteen places as for six; else
+ * the outer side only where the inner one has more than `hopeless`. */
+static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 step, int cuts,
+                        double hopeless)
+{
+    enum { FEW_CUTS = 2 };
+    places of = {.count = 0};
+    add_corners(&of, v, step, cuts);
+    of.outside = of.count;
+    csg_vec3 back = csg_vec3_scale(step, -1);
+    if (cuts <= FEW_CUTS) {
+        add_corners(&of, v, back, cuts);
+        return margin_at(p, s, &of);
+    }
+    double inside = margin_at(p, s, &of);
+    if (!(inside > hopeless))
+        return inside;
+    of.count = of.outside = 0;
+    add_corners(&of, v, back, cuts);
+    double outside = margin_at(p, s, &of);
+    return inside < outside ? inside : outside;
+}
+
 /* Whether all of the piece is inside a step along the axis, and outside a step back. Values lie
  * between those at the corners of a small triangle but for what gradients stray by from one vector.
- * As many triangles as it takes: gradients are found once, and values cost little. */
+ * As many triangles as it takes: gradients are found once, and values cost little. No gradient is
+ * longer than `longest`: no place is farther from zero than that on both sides. */
 static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3], double stray,
-                             double slack, csg_vec3 axis)
+                             double longest, csg_vec3 axis)
 {
     csg_vec3 step = csg_vec3_scale(axis, p->error);
+    double slack = slack_of(p);
     stray *= d.radius;
-    if (!(stray < MOST_CUTS * (double)s->tape.lipschitz * p->error))
+    if (!(stray < MOST_CUTS * longest * p->error))
         return false;
     for (int cuts = 2; cuts <= MOST_CUTS;) {
-        double inside = margin_of(p, s, v, step, 1, cuts) - slack;
-        if (!(inside * MOST_CUTS > stray))
-            return false;
-        double margin = fmin(inside, margin_of(p, s, v, step, -1, cuts) - slack);
+        double margin = margin_of(p, s, v, step, cuts, stray / MOST_CUTS + slack) - slack;
         if (margin * cuts > stray)
             return true;
         if (!(margin * MOST_CUTS > stray))
@@ -136,9 +170,10 @@ static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v
     if (!csg_cone_find_axis(&gradients->balls, &cone))
         return false;
     double least = cone.least * p->error - slack_of(p);
+    double longest = fmin(gradients->longest, (double)s->tape.lipschitz);
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
     return (gradients->low >= -least && gradients->high <= least) ||
-           settles_by_steps(p, s, d, v, gradients->stray, slack_of(p), axis);
+           settles_by_steps(p, s, d, v, gradients->stray, longest, axis);
 }
 
 /* Thin walls, sharp tips: a change of sign in any direction will do. */
@@ -200,7 +235,7 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
     /* any gradient is as near to zero as that */
     csg_vec3 inward = csg_vec3_scale(normal, -1);
     if ((!known || gradients.stray > 0.5 * steepest) &&
-        settles_by_steps(p, s, d, v, steepest, slack_of(p), inward))
+        settles_by_steps(p, s, d, v, steepest, steepest, inward))
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
     return d.radius <= 0.5 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;

@@ -64,11 +64,20 @@ typedef struct walk {
     atomic_bool out_of_memory;
 } walk;
 
+/* A place of the surface, and the gradient there. */
+typedef struct place {
+    csg_vec3 at, slope;
+} place;
+
 /* A cube with the tape that holds in it and around it. */
 typedef struct cube {
     csg_vec3 c;
     double half, around, value; /* in the middle, where the cube is small enough for one sheet */
+    place surface;              /* in the cube or a little around, if there is one */
     csg_tape tape;
+    double steepest, doubt; /* how fast the field changes at most along the axes, and its rounding
+                               there: in a cube that this one is a part of */
+    bool has_surface;
     bool is_sheet; /* with those around it */
     bool is_bent;  /* where it is one: it may have a crease, or a narrow fillet */
 } cube;
@@ -76,44 +85,79 @@ typedef struct cube {
 /* ---- the field in a cube -----------------------------------------------------------------------
  */
 
-static double value_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
-{
-    return csg_tape_value_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
-                             w->scratch_floats);
-}
-
-static csg_vec3 gradient_at(const walk *w, worker *s, const csg_tape *tape, csg_vec3 at)
-{
-    return csg_tape_gradient_at(w->remesh->probe.marching->kernel, tape, at, s->scratch,
-                                w->scratch_floats);
-}
-
 /* Values this small are zero. */
 static double noise_of(const walk *w)
 {
     return 4 * (double)w->remesh->probe.noise;
 }
 
-/* A place of the surface in the cube or a little around it, by Newton's steps from its middle. */
-static bool find_surface(const walk *w, worker *s, const cube *q, csg_vec3 *out)
+enum { SEEDS = CSG_LANES };
+
+/* Places that go to the surface, and the field where they are. */
+typedef struct seeds {
+    csg_vec3 at[SEEDS], slope[SEEDS];
+    double value[SEEDS];
+    uint32_t count, moving[SEEDS], moving_count; /* those that are still on their way */
+} seeds;
+
+static void add_seed(seeds *to, csg_vec3 at)
+{
+    to->moving[to->moving_count++] = to->count;
+    to->at[to->count++] = at;
+}
+
+/* The field where those are that move. */
+static void ask(const walk *w, worker *s, const csg_tape *tape, seeds *of)
+{
+    float at[3][SEEDS] = {{0}}, f[SEEDS], g[3][SEEDS];
+    for (uint32_t k = 0; k < of->moving_count; k++) {
+        csg_vec3 p = of->at[of->moving[k]];
+        at[0][k] = (float)p.x, at[1][k] = (float)p.y, at[2][k] = (float)p.z;
+    }
+    w->remesh->probe.marching->kernel->values_and_gradients(tape, at[0], at[1], at[2],
+                                                            of->moving_count, f, g[0], g[1], g[2],
+                                                            s->scratch, w->scratch_floats);
+    for (uint32_t k = 0; k < of->moving_count; k++) {
+        of->value[of->moving[k]] = (double)f[k];
+        of->slope[of->moving[k]] = csg_vec3_make((double)g[0][k], (double)g[1][k], (double)g[2][k]);
+    }
+}
+
+/* Seeds that were asked for go to places of the surface that are no farther off along any axis than
+ * `reach`, by Newton's steps; is_found: which do. All go at once: a walk over the tape for sixteen
+ * places costs what it does for one. */
+static void find_surfaces(const walk *w, worker *s, const csg_tape *tape, double reach, seeds *of,
+                          bool is_found[SEEDS])
 {
     enum { STEPS = 6 };
-    double noise = noise_of(w), reach = q->half + 0.9 * q->around;
-    double value = q->value;
-    csg_vec3 p = q->c;
-    for (int step = 0; step < STEPS && fabs(value) > noise; step++) {
-        csg_vec3 g = gradient_at(w, s, &q->tape, p);
-        double square = csg_vec3_dot(g, g);
-        if (!(square > 1e-6))
-            return false;
-        p = csg_vec3_sub(p, csg_vec3_scale(g, value / square));
-        if (!(fabs(p.x - q->c.x) <= reach && fabs(p.y - q->c.y) <= reach &&
-              fabs(p.z - q->c.z) <= reach))
-            return false;
-        value = value_at(w, s, &q->tape, p);
+    double noise = noise_of(w);
+    csg_vec3 begin[SEEDS];
+    memcpy(begin, of->at, of->count * sizeof *begin);
+    for (int step = 0;; step++) {
+        uint32_t left = 0;
+        for (uint32_t k = 0; k < of->moving_count; k++) {
+            uint32_t i = of->moving[k];
+            double square = csg_vec3_dot(of->slope[i], of->slope[i]);
+            is_found[i] = fabs(of->value[i]) <= noise;
+            if (is_found[i] || step == STEPS || !(square > 1e-6))
+                continue;
+            of->at[i] =
+                csg_vec3_sub(of->at[i], csg_vec3_scale(of->slope[i], of->value[i] / square));
+            csg_vec3 off = csg_vec3_sub(of->at[i], begin[i]);
+            if (fabs(off.x) <= reach && fabs(off.y) <= reach && fabs(off.z) <= reach)
+                of->moving[left++] = i;
+        }
+        of->moving_count = left;
+        if (!left)
+            return;
+        ask(w, s, tape, of);
     }
-    *out = p;
-    return fabs(value) <= noise;
+}
+
+/* How far around its middle a cube's places of the surface may lie. */
+static double reach_of(const cube *q)
+{
+    return q->half + 0.9 * q->around;
 }
 
 enum { RINGS = 4 }; /* around a place of the surface, each a quarter of that before it */
@@ -128,11 +172,11 @@ static double least_depth(const walk *w)
 /* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
  * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
  * would be none. */
-static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
+static bool is_border(const walk *w, worker *s, const cube *q, const place *at_zero)
 {
     enum { WAYS = 6, PLACES = 2 + RINGS * WAYS, PADDED = PLACES + CSG_LANES };
     float at[3][PADDED] = {{0}}, f[PADDED] = {0};
-    csg_vec3 uphill = csg_vec3_normalize(gradient_at(w, s, &q->tape, p));
+    csg_vec3 p = at_zero->at, uphill = csg_vec3_normalize(at_zero->slope);
     double noise = noise_of(w), reach = 0.25 * w->error;
     for (int i = 0; i < PLACES; i++) {
         int ring = (i - 2) / WAYS, way = (i - 2) % WAYS / 2;
@@ -151,18 +195,10 @@ static bool is_border(const walk *w, worker *s, const cube *q, csg_vec3 p)
     return inside && outside;
 }
 
-/* How far the field can be from its value in the middle, all over the cube. */
-static double change_in(const cube *q, const csg_gradients *gradients)
+/* Whether the field is too far from zero in the middle to be it anywhere in the cube. */
+static bool is_far_from_zero(const walk *w, const cube *q)
 {
-    double most = 0;
-    if (!(gradients->stray < INFINITY))
-        return INFINITY;
-    for (uint32_t i = 0; i < gradients->balls.count; i++) {
-        const csg_cone_ball *ball = &gradients->balls.items[i];
-        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
-        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
-    }
-    return most * q->half + gradients->doubt;
+    return fabs(q->value) > q->steepest * q->half + q->doubt + noise_of(w);
 }
 
 /* How near all gradients are at least to one direction, of the steepest. */
@@ -223,11 +259,9 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
     return fmin(distance, far);
 }
 
-/* The place of a sheet that goes through all of the cubes around it. */
-static bool is_sheet_near(const walk *w, worker *s, const cube *q)
+static bool is_surface_near(const walk *w, const cube *q)
 {
-    csg_vec3 p;
-    return find_surface(w, s, q, &p) && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error);
+    return q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface.at, w->error);
 }
 
 /* ---- where a sheet turns -----------------------------------------------------------------------
@@ -283,25 +317,31 @@ enum { TURNS = 5 };
 
 /* Places where a sheet turns within the cube: along the line in which tangent planes of both faces
  * meet, from there to the surface. */
-static uint32_t find_turns(const walk *w, worker *s, const cube *q, csg_vec3 out[TURNS])
+static uint32_t find_turns(const walk *w, worker *s, const cube *q, place out[TURNS])
 {
     static const double LEAST_SQUARE = 0.05; /* of the sine */
     csg_plane faces[2] = {{{0, 0, 0}, 0}};
-    cube from = *q;
     csg_vec3 middle = q->c;
+    seeds from = {.count = 0};
+    bool is_found[SEEDS];
     uint32_t count = 0;
     if (!find_faces(w, s, q, faces) || !csg_planes_meet_in_line(faces, LEAST_SQUARE, &middle))
         return 0;
     csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].g, faces[1].g));
     for (int i = 0; i < TURNS; i++) {
         double step = (2.0 * i / (TURNS - 1) - 1) * q->half;
-        from.c = csg_vec3_add(middle, csg_vec3_scale(along, step));
-        csg_vec3 off = csg_vec3_sub(from.c, q->c);
-        if (!(fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= q->half + 0.9 * q->around))
-            continue; /* another cube's */
-        from.value = value_at(w, s, &q->tape, from.c);
-        count += find_surface(w, s, &from, &out[count]);
+        csg_vec3 at = csg_vec3_add(middle, csg_vec3_scale(along, step));
+        csg_vec3 off = csg_vec3_sub(at, q->c);
+        if (fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= reach_of(q))
+            add_seed(&from, at); /* else it is another cube's */
     }
+    if (!from.count)
+        return 0;
+    ask(w, s, &q->tape, &from);
+    find_surfaces(w, s, &q->tape, reach_of(q), &from, is_found);
+    for (uint32_t i = 0; i < from.count; i++)
+        if (is_found[i])
+            out[count++] = (place){from.at[i], from.slope[i]};
     return count;
 }
 
@@ -315,8 +355,10 @@ static content content_of(const walk *w, worker *s, cube *q)
     if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, &all, s->scratch,
                             w->scratch_floats, &gradients))
         return ANYTHING;
-    if (fabs(q->value) > change_in(q, &gradients) + noise_of(w) ||
-        gradients.least > -least_depth(w) || gradients.most < least_depth(w))
+    q->steepest = fmin(q->steepest, csg_gradients_steepest(&gradients));
+    q->doubt = fmax(q->doubt, gradients.doubt);
+    if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
+        gradients.most < least_depth(w))
         return NOTHING; /* or a face that solids share */
     double leaning = leaning_of(&gradients.balls);
     q->is_sheet = leaning >= LEANING;
@@ -329,12 +371,12 @@ static content content_of(const walk *w, worker *s, cube *q)
 static verdict settle_turns(const walk *w, worker *s, const cube *q)
 {
     static const double CLOSE = 0.5; /* of the error */
-    csg_vec3 places[TURNS];
+    place places[TURNS];
     uint32_t triangle, count = q->is_bent ? find_turns(w, s, q, places) : 0;
     for (uint32_t i = 0; i < count; i++) {
-        csg_vec3 p = places[i];
+        csg_vec3 p = places[i].at;
         if (csg_triangle_tree_is_near(&w->remesh->tree, p, CLOSE * w->error) ||
-            !is_border(w, s, q, p))
+            !is_border(w, s, q, &places[i]))
             continue;
         if (q->half > w->error)
             return DIVIDE;
@@ -345,16 +387,23 @@ static verdict settle_turns(const walk *w, worker *s, const cube *q)
     return SETTLED;
 }
 
+/* Whether its value in the middle is too large for a surface to be in it. */
+static bool is_empty(const walk *w, const cube *q)
+{
+    return fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w) ||
+           is_far_from_zero(w, q);
+}
+
 /* A place of the surface at hand, how far from the mesh it is. */
 static verdict settle(const walk *w, worker *s, cube *q)
 {
     uint32_t triangle;
-    csg_vec3 p;
+    csg_vec3 p = q->surface.at;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    if (fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w))
+    if (is_empty(w, q))
         return SETTLED;
-    if (q->is_sheet && is_sheet_near(w, s, q))
+    if (q->is_sheet && is_surface_near(w, q))
         return settle_turns(w, s, q);
     bool ends = q->half <= w->least || is_near_mesh(w, q), sheet = false;
     if (!ends) {
@@ -363,17 +412,17 @@ static verdict settle(const walk *w, worker *s, cube *q)
             return what == NOTHING ? SETTLED : DIVIDE;
         sheet = true;
     }
-    if (!find_surface(w, s, q, &p))
+    if (!q->has_surface)
         return ends ? SETTLED : DIVIDE;
-    if (sheet && csg_triangle_tree_is_near(&w->remesh->tree, p, w->error))
+    if (sheet && is_surface_near(w, q))
         return settle_turns(w, s, q);
-    if (!is_border(w, s, q, p))
+    if (!is_border(w, s, q, &q->surface))
         return ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
 
-static void place_children(const cube *parent, float c[3][CSG_LANES])
+static void place_children(const cube *parent, float c[3][CSG_OCTANTS])
 {
     const double at[3] = {parent->c.x, parent->c.y, parent->c.z};
     for (int axis = 0; axis < 3; axis++)
@@ -381,42 +430,69 @@ static void place_children(const cube *parent, float c[3][CSG_LANES])
             c[axis][o] = (float)(at[axis] + (o >> axis & 1 ? 0.5 : -0.5) * parent->half);
 }
 
+/* The children that a surface may go through, with their tapes. False: out of memory. */
+static bool make_children(const walk *w, worker *s, const cube *parent, cube *children,
+                          uint32_t *count)
+{
+    float c[3][CSG_OCTANTS], tau = (float)(2 * w->lipschitz * w->remesh->cell);
+    cube child = *parent; /* what is known of all of it holds in its parts */
+    child.half = 0.5 * parent->half;
+    child.around = fmin(parent->around, child.half);
+    place_children(parent, c);
+    double reach = (child.half + child.around) * sqrt(3.0) * (1 + 1e-6);
+    if (!csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], (float)reach))
+        return false;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        if (csg_prune_state(&s->pruner, o) != CSG_CELL_SURFACE)
+            continue;
+        child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
+        if (!csg_prune_shorten(&s->pruner, o, tau, &s->arena, &child.tape))
+            return false;
+        children[(*count)++] = child;
+    }
+    return true;
+}
+
+/* The field in the middle of each child, and a place of the surface in it, by the tape that holds
+ * in all of them. */
+static void find_surfaces_of_children(const walk *w, worker *s, const cube *parent, cube *children,
+                                      uint32_t count)
+{
+    seeds from = {.count = 0};
+    bool is_found[SEEDS] = {false};
+    for (uint32_t i = 0; i < count; i++)
+        add_seed(&from, children[i].c);
+    ask(w, s, &parent->tape, &from);
+    from.moving_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        children[i].value = from.value[i];
+        if (!is_empty(w, &children[i]))
+            from.moving[from.moving_count++] = i;
+    }
+    find_surfaces(w, s, &parent->tape, reach_of(&children[0]), &from, is_found);
+    for (uint32_t i = 0; i < count; i++) {
+        children[i].has_surface = is_found[i];
+        children[i].surface = (place){from.at[i], from.slope[i]};
+    }
+}
+
 /* Cubes are halved from 16 cells to a fraction of the error: the depth is bounded. */
 static bool divide(const walk *w, worker *s, const cube *parent, int depth)
 {
     enum { DEEPEST = 24 };
-    float c[3][CSG_LANES] = {{0}}, f[CSG_LANES];
-    cube child = {.half = 0.5 * parent->half};
-    csg_cell_state states[CSG_OCTANTS];
-    csg_tape tapes[CSG_OCTANTS];
-    child.around = fmin(parent->around, child.half);
-    place_children(parent, c);
+    cube children[CSG_OCTANTS];
+    uint32_t count = 0;
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
-    double reach = (child.half + child.around) * sqrt(3.0) * (1 + 1e-6);
-    float tau = (float)(2 * w->lipschitz * w->remesh->cell);
-    bool done = csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], (float)reach);
-    for (int o = 0; o < CSG_OCTANTS && done; o++) {
-        states[o] = csg_prune_state(&s->pruner, o);
-        if (states[o] == CSG_CELL_SURFACE)
-            done = csg_prune_shorten(&s->pruner, o, tau, &s->arena, &tapes[o]);
-    }
-    if (done && may_be_sheet(w, child.half)) /* by the tape that holds in all of them, at once */
-        w->remesh->probe.marching->kernel->values(&parent->tape, c[0], c[1], c[2], CSG_OCTANTS, f,
-                                                  s->scratch, w->scratch_floats);
-    for (int o = 0; o < CSG_OCTANTS && done; o++) {
-        if (states[o] != CSG_CELL_SURFACE)
-            continue;
+    bool done = make_children(w, s, parent, children, &count);
+    if (done && count && may_be_sheet(w, children[0].half))
+        find_surfaces_of_children(w, s, parent, children, count);
+    for (uint32_t i = 0; i < count && done; i++) {
         if (++s->cubes > w->most_cubes || depth == DEEPEST) {
             s->segment->unfinished = true;
             break;
         }
-        child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
-        child.tape = tapes[o];
-        child.value = may_be_sheet(w, child.half) ? (double)f[o] : 0;
-        child.is_sheet = parent->is_sheet;
-        child.is_bent = parent->is_bent;
-        verdict what = settle(w, s, &child);
-        done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &child, depth + 1));
+        verdict what = settle(w, s, &children[i]);
+        done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &children[i], depth + 1));
     }
     csg_arena_release_to(&s->arena, mark);
     return done;
@@ -431,6 +507,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
     uint32_t at[3];
     cube whole = {.half = CSG_BLOCK_EDGE * lattice->cell_size,
                   .around = AROUND_CELLS * lattice->cell_size,
+                  .steepest = INFINITY,
                   .tape = csg_octree_frontier_tape(w->octree, item, at)};
     double c[3];
     for (int axis = 0; axis < 3; axis++)

@@ -38,7 +38,8 @@ static double span_of(const walker *w, const double at[3], double spread)
     double most = 0;
     for (int i = 0; i < 3; i++) {
         csg_vec3 to = csg_vec3_sub(r->triangle[i], r->c);
-        most = fmax(most, fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z));
+        double change = fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z);
+        most = change > most ? change : most;
     }
     return most + r->around * norm_of(at) + r->half * (fabs(at[0]) + fabs(at[1]) + fabs(at[2])) +
            spread * w->radius;
@@ -314,7 +315,8 @@ double csg_slopes_round(const double *values, uint32_t count, double w)
     for (int step = 0; step < STEPS; step++) {
         double squares = -w * w, slope = 0;
         for (uint32_t i = 0; i < count; i++) {
-            double u = fmax(values[i] - f + w, 0);
+            double u = values[i] - f + w;
+            u = u > 0 ? u : 0; /* fmax is a call */
             squares += u * u;
             slope += 2 * u;
         }
@@ -552,13 +554,19 @@ static bool walk(walker *w, const float *low, const float *high)
     return true;
 }
 
+/* Whether gradients need not be in the hull of the balls. */
+static bool exceeds_hull(const operand *root)
+{
+    return root->stretched || root->faces || root->balls.has_edges;
+}
+
 /* How far gradients are at most from the middle of the balls, which they are in the hull of. */
 static double find_stray(const operand *root, double at[3])
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
     double stray = INFINITY;
-    if (balls->count && (root->stretched || root->faces || balls->has_edges)) {
+    if (balls->count && exceeds_hull(root)) {
         stray = enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
@@ -577,7 +585,7 @@ static double find_longest(const operand *root)
 {
     const csg_cone_balls *balls = &root->balls;
     double most = 0;
-    if (root->stretched || root->faces || balls->has_edges)
+    if (exceeds_hull(root))
         return root->longest;
     for (uint32_t i = 0; i < balls->count; i++)
         most = fmax(most, norm_of(balls->items[i].at) + balls->items[i].spread);
@@ -614,6 +622,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     out->balls = w.stack[0].balls;
     out->value = w.stack[0].value;
     out->longest = find_longest(&w.stack[0]);
+    out->exceeds = exceeds_hull(&w.stack[0]);
     out->low = w.stack[0].low;
     out->high = w.stack[0].high;
     out->least = w.stack[0].least;
@@ -621,4 +630,19 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     out->stray = find_stray(&w.stack[0], out->middle);
     out->doubt = w.stack[0].doubt;
     return out->balls.count > 0;
+}
+
+double csg_gradients_steepest(const csg_gradients *gradients)
+{
+    double most = 0;
+    if (!(gradients->stray < INFINITY))
+        return INFINITY;
+    if (gradients->exceeds)
+        return sqrt(3.0) * gradients->longest;
+    for (uint32_t i = 0; i < gradients->balls.count; i++) {
+        const csg_cone_ball *ball = &gradients->balls.items[i];
+        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
+        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
+    }
+    return most;
 }

@@ -36,7 +36,8 @@ typedef struct csg_gradients {
     double low, high;   /* over the triangle */
     double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
-    double stray;       /* no gradient is farther from `middle`; INFINITY: not known */
+    bool exceeds; /* they may be combinations of the balls with weights of more than 1 in all */
+    double stray; /* no gradient is farther from `middle`; INFINITY: not known */
     double middle[3];
     double doubt; /* rounding of the field's values */
 } csg_gradients;
@@ -45,6 +46,10 @@ typedef struct csg_gradients {
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
+
+/* What the field changes by at most along a way, of the longest of its parts along the axes: the
+ * largest sum of a gradient's absolute parts. INFINITY: not known. */
+double csg_gradients_steepest(const csg_gradients *gradients);
 
 /* What a join by a fold gives of two values of a union (of an intersection: turned around), and the
  * share of a. n, chi: the join's parameters. */
