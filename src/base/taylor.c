@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
+
 enum { XX, YY, ZZ, XY, XZ, YZ };
 enum { XXX, YYY, ZZZ, XXY, XXZ, XYY, YYZ, XZZ, YZZ, XYZ };
 
@@ -353,4 +355,43 @@ csg_taylor csg_taylor_square(const csg_taylor *a, double r)
         .value = a->value * a->value, .slope = {2 * a->value}, .bend = {2}, .norm = 2};
     csg_taylor_change change = csg_taylor_change_of(&a, 1, r);
     return csg_taylor_compose(&o, &a, 1, &change, r);
+}
+
+/* Between 0 and the largest power in the ball. */
+static csg_taylor power_near_zero(const csg_taylor *a, const csg_taylor_change *c, double p,
+                                  double r)
+{
+    double most = fabs(a->value) + c->most, slope = c->linear + c->turned;
+    slope += (c->square + (0.5 * c->cubic + c->thrice * r) * r) * r;
+    double half = 0.5 * csg_pow(most, p) * (1 + 1e-12);
+    return (csg_taylor){
+        .value = half, .error = half, .turned = p * csg_pow(most, p - 1) * slope * (1 + 1e-12)};
+}
+
+bool csg_taylor_power(const csg_taylor *a, double p, double r, csg_taylor *out)
+{
+    const csg_taylor turned = csg_taylor_scaled(a, a->value < 0 ? -1 : 1);
+    const csg_taylor *of = &turned;
+    csg_taylor_change change = csg_taylor_change_of(&of, 1, r);
+    double v = turned.value, least = v - change.most, most = v + change.most;
+    if (p == 2 || p == 4) {
+        csg_taylor square = csg_taylor_square(a, r);
+        *out = p == 2 ? square : csg_taylor_square(&square, r);
+        return true;
+    }
+    if (!(least > 0.1 * v)) {
+        *out = power_near_zero(a, &change, p, r);
+        return p >= 1;
+    }
+    double top = csg_pow(v, p), slope = p * top / v, bend = (p - 1) * slope / v;
+    double third = (p - 2) * bend / v, fourth = fabs(p * (p - 1) * (p - 2) * (p - 3)) / 24;
+    const csg_taylor_outer o = {.value = top,
+                                .slope = {slope},
+                                .bend = {bend},
+                                .third = (p - 2) / (3 * p * top),
+                                .norm = fabs(bend),
+                                .third_norm = fabs(third),
+                                .fourth = fourth * csg_pow(p < 4 ? least : most, p - 4)};
+    *out = csg_taylor_compose(&o, &of, 1, &change, r);
+    return true;
 }

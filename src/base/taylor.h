@@ -76,6 +76,8 @@ csg_taylor csg_taylor_compose(const csg_taylor_outer *outer, const csg_taylor *c
 bool csg_taylor_norm(const csg_taylor *const *u, int count, double radius, csg_taylor *out);
 bool csg_taylor_root(const csg_taylor *a, double radius, csg_taylor *out);
 bool csg_taylor_inverse(const csg_taylor *a, double radius, csg_taylor *out);
+/* |a|^p, p > 0. Where a may be 0 no more is known than how large it is, but of squares. */
+bool csg_taylor_power(const csg_taylor *a, double p, double radius, csg_taylor *out);
 csg_taylor csg_taylor_product(const csg_taylor *a, const csg_taylor *b, double radius);
 csg_taylor csg_taylor_square(const csg_taylor *a, double radius);
 

@@ -140,10 +140,25 @@ static inline bool csg_superellipsoid_may_crease(const float *own, const float q
     return true;
 }
 
-/* Its powers have no bound on third derivatives at its planes of symmetry. */
+/* Its formula, in powers; it is no distance, and nobody asks for its derivatives. */
 static inline bool csg_superellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    return false;
+    const double q = (double)l->own[3], p = (double)l->own[4];
+    csg_taylor parts[3], across, sum;
+    for (int i = 0; i < 3; i++) {
+        csg_taylor share = csg_taylor_scaled(&l->p[i].f, 1 / (double)l->own[i]);
+        if (!csg_taylor_power(&share, i < 2 ? q : p, l->radius, &parts[i]))
+            return false;
+    }
+    across = csg_taylor_sum(&parts[0], 1, &parts[1]);
+    if (p != q && !csg_taylor_power(&across, p / q, l->radius, &across))
+        return false;
+    sum = csg_taylor_sum(&across, 1, &parts[2]);
+    if (l->with_slopes || !csg_taylor_power(&sum, 1 / p, l->radius, &sum))
+        return false;
+    out->f = csg_taylor_scaled(&sum, -(double)l->own[5]);
+    out->f.value += (double)l->own[5];
+    return true;
 }
 
 #endif
