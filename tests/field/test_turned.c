@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * True gradients (field/kernels/turned_kernel.h): of fillets and of rules with debulge they are
  * what central differences of the field in double say, where those that operators look at are off
- * by degrees; elsewhere they are the same bits; every build has the same, and so has a tape that is
- * shortened for a cell.
+ * by degrees; elsewhere they are the same bits; every build has the same.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -149,7 +148,7 @@ typedef struct measured {
 } measured;
 
 static void measure(const csg_kernel *kernel, const csg_tape *tape, const test_points *points,
-                    const csg_valid_cube *within, measured *out)
+                    measured *out)
 {
     size_t floats = csg_kernel_scratch_floats(csg_tape_depth(tape));
     float *scratch = malloc(floats * sizeof *scratch);
@@ -157,8 +156,8 @@ static void measure(const csg_kernel *kernel, const csg_tape *tape, const test_p
     memset(out, 0, sizeof *out);
     kernel->gradients(tape, points->x, points->y, points->z, points->count, out->plain[0],
                       out->plain[1], out->plain[2], scratch, floats);
-    kernel->true_gradients(tape, points->x, points->y, points->z, points->count, within,
-                           out->turned[0], out->turned[1], out->turned[2], scratch, floats);
+    kernel->true_gradients(tape, points->x, points->y, points->z, points->count, out->turned[0],
+                           out->turned[1], out->turned[2], scratch, floats);
     free(scratch);
 }
 
@@ -187,8 +186,7 @@ static void test_angles(void **state)
         test_subject_begin(&s);
         test_subject_compile(&s, make_scene(&s.builder, which));
         scatter(s.scene, s.field, &random, &points);
-        measure(csg_kernel_for(csg_cpu_best_isa(CSGM_ISA_AUTO)), &s.field->tape, &points, NULL,
-                &all);
+        measure(csg_kernel_for(csg_cpu_best_isa(CSGM_ISA_AUTO)), &s.field->tape, &points, &all);
         for (size_t i = 0; i < points.count; i++) {
             csg_vec3 truth, p = test_points_in_scene(&points, i, s.field);
             float *const turned[3] = {all.turned[0], all.turned[1], all.turned[2]};
@@ -236,9 +234,9 @@ static void test_builds(void **state)
         test_points_clear(&points);
         while (test_points_add(&points, test_point(&random, 1.5)) && points.count < 128) {
         }
-        measure(kernels[0], &s.field->tape, &points, NULL, &first);
+        measure(kernels[0], &s.field->tape, &points, &first);
         for (size_t k = 1; k < kernel_count; k++) {
-            measure(kernels[k], &s.field->tape, &points, NULL, &other);
+            measure(kernels[k], &s.field->tape, &points, &other);
             same(&first, &other, points.count, kernels[k]->name);
         }
         for (int k = 0; k < 3; k++) {
@@ -252,75 +250,12 @@ static void test_builds(void **state)
     assert_true(changed > 20 * test_times);
 }
 
-static csg_valid_cube cube_of(cube k)
-{
-    return (csg_valid_cube){{(float)k.center.x, (float)k.center.y, (float)k.center.z},
-                            (float)k.half};
-}
-
-/* Points on the faces of a cube where the surface is near. */
-static void at_rim(const walk *w, csg_random *random, cube k, float tau, test_points *points)
-{
-    test_points_clear(points);
-    for (int tries = 0; tries < 200 && points->count < 32; tries++) {
-        csg_vec3 to = test_point(random, k.half);
-        double *axis[3] = {&to.x, &to.y, &to.z};
-        *axis[tries % 3] = copysign(k.half * 0.999999, *axis[tries % 3]);
-        to = csg_vec3_add(k.center, to);
-        if (fabs(at(w->subject.scene, csg_vec3_add(to, w->subject.field->center))) <
-            0.25 * (double)tau)
-            test_points_add(points, to);
-    }
-}
-
-/* Tapes shortened for a cell have the same bits where the surface leaves it. */
-static void test_cells(void **state)
-{
-    static test_points points;
-    static measured whole, part;
-    csg_random random = {test_first_seed + 47};
-    size_t compared = 0, shorter = 0;
-    for (unsigned i = 0; i < 60 * test_times; i++) {
-        walk w = {0};
-        test_random_fillets = true;
-        test_random_rules = i % 3 == 2;
-        test_subject_begin(&w.subject);
-        test_subject_compile(&w.subject,
-                             test_random_scene(&w.subject.builder, &random, 3 + i % 10));
-        const csg_tape *tape = &w.subject.field->tape;
-        walk_begin(&w, 2);
-        for (int k = 0; k < 6; k++) {
-            csg_vec3 p = test_towards_surface(w.subject.scene, test_point(&random, 1.5), 8);
-            cube parent = {csg_vec3_sub(p, w.subject.field->center),
-                           csg_random_uniform(&random, 0.02, 0.2)};
-            cube child = child_of(parent, 0);
-            csg_tape short_tape;
-            float tau = (float)(0.25 * child.half); /* of a block of 8^3 cells */
-            prune_children(&w, tape, parent);
-            if (csg_prune_state(&w.pruner, 0) != CSG_CELL_SURFACE)
-                continue;
-            assert_true(csg_prune_shorten(&w.pruner, 0, tau, &w.arena, &short_tape));
-            csg_valid_cube valid = cube_of(child);
-            at_rim(&w, &random, child, tau, &points);
-            measure(w.kernel, tape, &points, &valid, &whole);
-            measure(w.kernel, &short_tape, &points, &valid, &part);
-            same(&whole, &part, points.count, "shortened");
-            compared += points.count;
-            shorter += short_tape.count < tape->count;
-        }
-        walk_end(&w);
-    }
-    test_random_fillets = test_random_rules = false;
-    assert_true(compared > 1000 * test_times && shorter > 20 * test_times);
-}
-
 int main(int argc, char **argv)
 {
     test_take_search(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_angles),
         cmocka_unit_test(test_builds),
-        cmocka_unit_test(test_cells),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

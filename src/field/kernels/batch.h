@@ -18,11 +18,6 @@ typedef struct csg_points {
     size_t count; /* a multiple of CSG_OCTANTS */
 } csg_points;
 
-/* Where a tape is valid. */
-typedef struct csg_valid_cube {
-    float center[3], half;
-} csg_valid_cube;
-
 /* Inside the builds: names that end in the build's own. */
 #ifdef CSG_KERNEL
 #define CSG_CONCATENATE_(a, b) a##b

@@ -530,8 +530,8 @@ static void gradients(const csg_tape *tape, const float *x, const float *y, cons
 
 /* A third of the scratch is for the walk, the rest for what it asks of places nearby. */
 static void true_gradients(const csg_tape *tape, const float *x, const float *y, const float *z,
-                           size_t count, const csg_valid_cube *cube, float *gx, float *gy,
-                           float *gz, float *scratch, size_t scratch_floats)
+                           size_t count, float *gx, float *gy, float *gz, float *scratch,
+                           size_t scratch_floats)
 {
     float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
     uint32_t depth = csg_tape_depth(tape);
@@ -543,7 +543,6 @@ static void true_gradients(const csg_tape *tape, const float *x, const float *y,
     kernel_slots room = {slot(s, csg_kernel_arrays(depth)), s.stride};
     turned turn; /* not filled: it is large */
     turn.tape = tape;
-    turn.cube = cube;
     turn.room = room;
     mixed(tape, x, y, z, count, NULL, out, TRUE_GRADIENTS, s, depth, &turn);
 }

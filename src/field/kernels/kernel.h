@@ -42,12 +42,12 @@ typedef struct csg_kernel {
                                  float *gz, float *scratch, size_t scratch_floats);
 
     /* Gradients of the values as they are: with what a fillet or a turning join gains as its
-     * operands' gradients turn from place to place, which `gradients` leaves out. For points within
-     * the cube, outside of which the tape need not be valid (NULL: it is everywhere): seven
-     * gradients of operands each where they blend. */
+     * operands' gradients turn from place to place, which `gradients` leaves out. For a tape that
+     * is valid everywhere: operands are asked for nearby, where one that is shortened keeps its
+     * value but not theirs. Seven gradients of operands each where they blend. */
     void (*true_gradients)(const csg_tape *tape, const float *x, const float *y, const float *z,
-                           size_t count, const csg_valid_cube *cube, float *gx, float *gy,
-                           float *gz, float *scratch, size_t scratch_floats);
+                           size_t count, float *gx, float *gy, float *gz, float *scratch,
+                           size_t scratch_floats);
 
     /* Colours: the leaves' in the proportions of the operators' partial derivatives; rgba[4]
      * arrays of count. */

@@ -6,8 +6,7 @@
  * the gradients of places nearby while their values stay. So what noise there is is that of
  * gradients, times the fillet's length. Part of kernel.c, in a file of its own.
  *
- * Differences look to one side, where the tape is known to be valid (csg_valid_cube), so that a
- * shorter tape gives the same bits; they are of second order: (4 F(h) - F(2 h) - 3 F(0)) / 2 h.
+ * Differences are of second order: (4 F(h) - F(2 h) - 3 F(0)) / 2 h.
  */
 #ifndef CSG_FIELD_TURNED_KERNEL_H
 #define CSG_FIELD_TURNED_KERNEL_H
@@ -22,9 +21,6 @@
 /* Steps are a share of the length over which F changes, but no less than what floats of that place
  * make of the gradients' directions. */
 static const float TURNED_STEP = 0x1p-8f, TURNED_STEP_OF_PLACE = 0x1p-12f;
-/* Of the cube's half edge at most: two steps stay in it, and in the band of values within which a
- * tape that is shortened for a cube of several cells has the same bits. */
-static const float TURNED_STEP_MOST = 0x1p-4f;
 /* Slopes of two steps that differ by more: an operand's gradient jumps between them. F's own are
  * some 1. */
 static const float TURNED_JUMP = 0x1p-4f;
@@ -33,8 +29,7 @@ static const float TURNED_JUMP = 0x1p-4f;
  * tape: number k has ranges[2 k + 1] nodes from ranges[2 k] on. */
 typedef struct turned {
     const csg_tape *tape;
-    const csg_valid_cube *cube; /* NULL: the tape is valid everywhere */
-    kernel_slots room;          /* for the operands as they are nearby, and walks over these */
+    kernel_slots room; /* for the operands as they are nearby, and walks over these */
     const fillet_arrays *fillet;
     const float *join; /* a turning join's parameters, where it is no fillet */
     uint32_t arity, *ranges;
@@ -79,10 +74,9 @@ static void turned_add_point(turned *t, csg_points p, size_t i, float length)
 {
     const float at[3] = {p.x[i], p.y[i], p.z[i]};
     float far = absolute(at[0]) + absolute(at[1]) + absolute(at[2]);
-    float step = larger(TURNED_STEP * length, TURNED_STEP_OF_PLACE * far);
     for (int k = 0; k < 3; k++)
         t->place[k][t->count] = at[k];
-    t->step[t->count] = t->cube ? smaller(step, TURNED_STEP_MOST * t->cube->half) : step;
+    t->step[t->count] = larger(TURNED_STEP * length, TURNED_STEP_OF_PLACE * far);
     t->which[t->count++] = (uint32_t)i;
 }
 
@@ -180,8 +174,7 @@ static void turned_difference(turned *t, int axis)
         memcpy(at[k], t->place[k], t->padded * sizeof(float));
     for (size_t j = 0; j < t->padded; j++) {
         float from = t->place[axis][j];
-        int is_back = t->cube && from > t->cube->center[axis];
-        step[j] = (from + (is_back ? -t->step[j] : t->step[j])) - from; /* what floats make of it */
+        step[j] = (from + t->step[j]) - from; /* what floats make of it */
     }
     for (int k = 1; k <= 2; k++) {
         for (size_t j = 0; j < t->padded; j++)
@@ -196,9 +189,7 @@ static void turned_difference(turned *t, int axis)
     }
     for (size_t j = 0; j < t->padded; j++)
         t->share[axis][j] =
-            step[j] > 0 || step[j] < 0
-                ? turned_slope(step[j], t->value[0][j], t->value[1][j], t->value[2][j])
-                : 0;
+            step[j] > 0 ? turned_slope(step[j], t->value[0][j], t->value[1][j], t->value[2][j]) : 0;
 }
 
 /* Adds what was found to three channels of the operator's result. */

@@ -81,16 +81,6 @@ typedef struct part_range {
     int first_layer, end_layer;
 } part_range;
 
-/* The cube of so many lattice cells along an edge, whose first point this is. */
-static csg_valid_cube cube_of(const csg_lattice *lattice, const uint32_t first[3], uint32_t edge)
-{
-    csg_valid_cube cube;
-    for (int axis = 0; axis < 3; axis++)
-        cube.center[axis] = csg_lattice_coordinate(lattice, axis, first[axis] + edge / 2);
-    cube.half = (float)(0.5 * edge * lattice->cell_size);
-    return cube;
-}
-
 static part_range range_of_part(unsigned octant)
 {
     enum { P = CSG_PART_EDGE };
@@ -192,9 +182,21 @@ void csg_marching_materials(const csg_marching *m, const csg_tape *tape, const c
     write_materials(e, channels, out);
 }
 
-/* Roots, normals, colours and materials of the collected edges; cube: what the tape is for. */
-static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape,
-                              const csg_valid_cube *cube, csg_marching_room *room,
+void csg_marching_gradients(const csg_marching *m, const csg_tape *tape, const float *x,
+                            const float *y, const float *z, size_t count, float *const out[3],
+                            float *scratch, size_t scratch_floats)
+{
+    enum { MOST_NODES = 256 }; /* of a whole tape, which each point is asked of seven times */
+    const csg_tape *whole = &m->field->tape;
+    if (whole->turns && whole->count <= MOST_NODES)
+        m->kernel->true_gradients(whole, x, y, z, count, out[0], out[1], out[2], scratch,
+                                  scratch_floats);
+    else
+        m->kernel->gradients(tape, x, y, z, count, out[0], out[1], out[2], scratch, scratch_floats);
+}
+
+/* Roots, normals, colours and materials of the collected edges. */
+static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
                               const csg_marching_output *out, float *scratch, size_t scratch_floats)
 {
     csg_edges *e = &room->edges;
@@ -206,8 +208,8 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape,
     uint64_t evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     if (out->normals) {
-        m->kernel->true_gradients(tape, e->x, e->y, e->z, e->count, cube, channels[0], channels[1],
-                                  channels[2], scratch, scratch_floats);
+        csg_marching_gradients(m, tape, e->x, e->y, e->z, e->count, channels, scratch,
+                               scratch_floats);
         write_normals(e, channels, out->normals);
     }
     if (out->colors)
@@ -223,13 +225,11 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
 {
     csg_tape tape = m->field->tape;
     block_lines lines = lines_of(m->lattice, block);
-    const uint32_t first[3] = {block->at[0] * E, block->at[1] * E, block->at[2] * E};
     if (!block->parts) {
         tape.nodes = block->nodes;
         tape.count = block->node_count;
-        csg_valid_cube cube = cube_of(m->lattice, first, E);
         collect_edges(block, &lines, (part_range){~(uint64_t)0, 0, E}, &room->edges);
-        return make_vertices(m, &tape, &cube, room, out, scratch, scratch_floats);
+        return make_vertices(m, &tape, room, out, scratch, scratch_floats);
     }
     uint64_t evaluations = 0;
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
@@ -238,12 +238,8 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
             continue;
         tape.nodes = part->nodes;
         tape.count = part->node_count;
-        uint32_t at[3];
-        for (unsigned axis = 0; axis < 3; axis++)
-            at[axis] = first[axis] + (octant >> axis & 1) * CSG_PART_EDGE;
-        csg_valid_cube cube = cube_of(m->lattice, at, CSG_PART_EDGE);
         collect_edges(block, &lines, range_of_part(octant), &room->edges);
-        evaluations += make_vertices(m, &tape, &cube, room, out, scratch, scratch_floats);
+        evaluations += make_vertices(m, &tape, room, out, scratch, scratch_floats);
     }
     return evaluations;
 }

@@ -110,6 +110,12 @@ uint64_t csg_marching_roots(const csg_marching *marching, const csg_block *block
 uint64_t csg_marching_shifted_roots(const csg_marching *marching, const csg_block *block,
                                     csg_marching_room *room, float *scratch, size_t scratch_floats);
 
+/* The gradients that normals are of, by a tape that is valid there: the true ones (kernel.h) where
+ * the whole tape is not too long to be asked for them, so that no shortening shows. */
+void csg_marching_gradients(const csg_marching *marching, const csg_tape *tape, const float *x,
+                            const float *y, const float *z, size_t count, float *const out[3],
+                            float *scratch, size_t scratch_floats);
+
 /* Colours and materials at the points x, y, z of edges, to their ranks. */
 void csg_marching_colors(const csg_marching *marching, const csg_tape *tape, const csg_edges *edges,
                          float *const channels[4], uint8_t *out, float *scratch,

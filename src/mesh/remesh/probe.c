@@ -83,20 +83,8 @@ static uint32_t leaf_at(csg_probe_room *room, const csg_bricks *b, const float a
     return room->leaf;
 }
 
-/* Of cubes of so many cells along an edge, the one at this place. */
-static csg_valid_cube cube_of(const csg_lattice *lattice, const uint32_t place[3], uint32_t edge)
+static void choose_tape(const csg_probe *probe, const float at[3], size_t i)
 {
-    csg_valid_cube cube;
-    for (int axis = 0; axis < 3; axis++)
-        cube.center[axis] = csg_lattice_coordinate(lattice, axis, place[axis] * edge + edge / 2);
-    cube.half = (float)(0.5 * edge * lattice->cell_size);
-    return cube;
-}
-
-/* Returns the cube that the tape is for. */
-static csg_valid_cube choose_tape(const csg_probe *probe, const float at[3], size_t i)
-{
-    static const csg_valid_cube EVERYWHERE = {.half = INFINITY};
     const csg_marching *m = probe->marching;
     csg_probe_room *room = probe->room;
     uint32_t cell[3];
@@ -108,13 +96,11 @@ static csg_valid_cube choose_tape(const csg_probe *probe, const float at[3], siz
             csg_tape tape = csg_bricks_tape(m->bricks, &m->bricks->items[found]);
             room->nodes[i] = tape.nodes;
             room->node_count[i] = tape.count;
-            return cube_of(m->bricks->lattice, m->bricks->items[found].at,
-                           CSG_BRICK_EDGE << (m->bricks->finest - m->bricks->items[found].level));
         }
-        return EVERYWHERE;
+        return;
     }
     if (!csg_lattice_cell_of(m->lattice, at, cell))
-        return EVERYWHERE;
+        return;
     const uint32_t place[3] = {cell[0] / CSG_BLOCK_EDGE, cell[1] / CSG_BLOCK_EDGE,
                                cell[2] / CSG_BLOCK_EDGE};
     if (!room->has_last || memcmp(room->last, place, sizeof place) != 0) {
@@ -124,11 +110,11 @@ static csg_valid_cube choose_tape(const csg_probe *probe, const float at[3], siz
     }
     const csg_block *block = room->found;
     if (!block)
-        return EVERYWHERE;
+        return;
     room->nodes[i] = block->nodes;
     room->node_count[i] = block->node_count;
     if (!block->parts)
-        return cube_of(m->lattice, place, CSG_BLOCK_EDGE);
+        return;
     unsigned octant = 0;
     for (unsigned axis = 0; axis < 3; axis++)
         octant |= (cell[axis] % CSG_BLOCK_EDGE >= CSG_PART_EDGE ? 1u : 0u) << axis;
@@ -136,9 +122,6 @@ static csg_valid_cube choose_tape(const csg_probe *probe, const float at[3], siz
         room->nodes[i] = block->parts[octant].nodes;
         room->node_count[i] = block->parts[octant].node_count;
     }
-    const uint32_t part[3] = {cell[0] / CSG_PART_EDGE, cell[1] / CSG_PART_EDGE,
-                              cell[2] / CSG_PART_EDGE};
-    return cube_of(m->lattice, part, CSG_PART_EDGE);
 }
 
 /* Links the points of each tape, in their order. How many tapes there are: their first points are
@@ -263,15 +246,15 @@ void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size
 void csg_probe_true_gradient(csg_probe *probe, const float at[3], float out[3])
 {
     csg_probe_room *room = probe->room;
-    csg_valid_cube cube = choose_tape(probe, at, 0);
+    choose_tape(probe, at, 0);
     csg_tape tape = probe->marching->field->tape;
     float *const c[3] = {room->channels[0], room->channels[1], room->channels[2]};
     tape.nodes = room->nodes[0];
     tape.count = room->node_count[0];
     room->next[0] = NO_POINT;
     gather(room, (const float(*)[3])at, 0);
-    probe->marching->kernel->true_gradients(&tape, room->x, room->y, room->z, 1, &cube, c[0], c[1],
-                                            c[2], probe->scratch, probe->scratch_floats);
+    csg_marching_gradients(probe->marching, &tape, room->x, room->y, room->z, 1, c, probe->scratch,
+                           probe->scratch_floats);
     for (int k = 0; k < 3; k++)
         out[k] = c[k][0];
     probe->evaluations++;
