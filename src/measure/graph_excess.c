@@ -87,21 +87,13 @@ static double excess_of_whole(const csg_graph_patch *q, const level *l, const ti
     return sum;
 }
 
-/* Where the linear part is above `value`. By the middles of edges, which is right up to second
- * order. */
+/* Where the linear part is above `value`. */
 static double excess_of_part(const csg_graph_patch *q, const level *l, double value)
 {
-    double polygon[CSG_GRAPH_CLIPPED][2], sum = 0;
-    int count = csg_graph_patch_clip(q, value, polygon);
-    for (int i = 1; i + 1 < count; i++) {
-        const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
-        double area = csg_graph_patch_triangle(t[0], t[1], t[2]);
-        for (int n = 0; n < 3; n++) {
-            const double *a = t[n], *b = t[(n + 1) % 3];
-            const double middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
-            sum += area / 3 * excess_at(q, l, middle);
-        }
-    }
+    const csg_graph_rule rule = csg_graph_patch_rule(q, value);
+    double sum = 0;
+    for (int i = 0; i < rule.count; i++)
+        sum += rule.weight[i] * excess_at(q, l, rule.at[i]);
     return sum;
 }
 

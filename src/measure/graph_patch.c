@@ -238,8 +238,7 @@ int csg_graph_patch_bent_axis(const csg_graph_patch *q)
 }
 
 /* Where value + g . d > 0. Returns its corners. */
-int csg_graph_patch_clip(const csg_graph_patch *q, double value,
-                         double polygon[CSG_GRAPH_CLIPPED][2])
+static int clip(const csg_graph_patch *q, double value, double polygon[CSG_GRAPH_CLIPPED][2])
 {
     static const int SIGN[CORNERS][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     double values[CORNERS], corners[CORNERS][2];
@@ -263,27 +262,45 @@ int csg_graph_patch_clip(const csg_graph_patch *q, double value,
     return count;
 }
 
-double csg_graph_patch_triangle(const double *a, const double *b, const double *c)
+static double triangle_area(const double *a, const double *b, const double *c)
 {
     return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
 }
 
-csg_graph_part csg_graph_patch_find_part(const csg_graph_patch *q, double value)
+csg_graph_rule csg_graph_patch_rule(const csg_graph_patch *q, double value)
 {
     double polygon[CSG_GRAPH_CLIPPED][2];
-    int count = csg_graph_patch_clip(q, value, polygon);
-    csg_graph_part sum = {0};
+    int count = clip(q, value, polygon);
+    csg_graph_rule rule;
+    rule.count = 0;
+    rule.area = 0;
     for (int i = 1; i + 1 < count; i++) {
         const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
-        double area = csg_graph_patch_triangle(t[0], t[1], t[2]);
-        sum.area += area;
+        double area = triangle_area(t[0], t[1], t[2]);
+        rule.area += area;
         for (int n = 0; n < 3; n++) {
             const double *a = t[n], *b = t[(n + 1) % 3];
-            const double middle[2] = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
-            double line = line_at(q, value, middle);
-            sum.line += area / 3 * line;
-            sum.bent += area / 3 * (line + bend_at(q, middle));
+            rule.at[rule.count][0] = 0.5 * (a[0] + b[0]);
+            rule.at[rule.count][1] = 0.5 * (a[1] + b[1]);
+            rule.weight[rule.count++] = area / 3;
         }
+    }
+    return rule;
+}
+
+typedef struct part {
+    double area, line, bent; /* integrals of 1, of the linear part, of that and the bends */
+} part;
+
+/* Where value + g . d > 0. */
+static part find_part(const csg_graph_patch *q, double value)
+{
+    const csg_graph_rule rule = csg_graph_patch_rule(q, value);
+    part sum = {.area = rule.area};
+    for (int i = 0; i < rule.count; i++) {
+        double line = line_at(q, value, rule.at[i]);
+        sum.line += rule.weight[i] * line;
+        sum.bent += rule.weight[i] * (line + bend_at(q, rule.at[i]));
     }
     return sum;
 }
@@ -301,9 +318,8 @@ double csg_graph_patch_above(const csg_graph_patch *q, double level, double *ope
     if (value - line - reach >= 0)
         return csg_graph_patch_area(q) *
                (value + (q->bend[CSG_GRAPH_XX] * x * x + q->bend[CSG_GRAPH_YY] * y * y) / 6);
-    csg_graph_part here = csg_graph_patch_find_part(q, value),
-                   more = csg_graph_patch_find_part(q, value + reach),
-                   less = csg_graph_patch_find_part(q, value - reach);
+    part here = find_part(q, value), more = find_part(q, value + reach),
+         less = find_part(q, value - reach);
     *open += fmax(more.line - 2 * here.line + less.line, 0) + third * more.area;
     return here.bent;
 }
@@ -313,8 +329,7 @@ double csg_graph_patch_above(const csg_graph_patch *q, double level, double *ope
 double csg_graph_patch_shown(const csg_graph_base *g, const csg_graph_patch *q, double beyond)
 {
     double up = g->half + beyond;
-    return fmax(csg_graph_patch_find_part(q, q->z + up).area -
-                    csg_graph_patch_find_part(q, q->z - up).area,
+    return fmax(csg_graph_patch_rule(q, q->z + up).area - csg_graph_patch_rule(q, q->z - up).area,
                 0);
 }
 

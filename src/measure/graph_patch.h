@@ -11,9 +11,10 @@
 #include "base/taylor.h"
 
 enum {
-    CSG_GRAPH_SIDE = 2,   /* first patches along a side of the face */
-    CSG_GRAPH_HALVED = 2, /* times at most, one that is cut */
-    CSG_GRAPH_CLIPPED = 5 /* corners of a rectangle that is clipped, at most */
+    CSG_GRAPH_SIDE = 2,    /* first patches along a side of the face */
+    CSG_GRAPH_HALVED = 2,  /* times at most, one that is cut */
+    CSG_GRAPH_CLIPPED = 5, /* corners of a rectangle that is clipped, at most */
+    CSG_GRAPH_POINTS = 3 * (CSG_GRAPH_CLIPPED - 2)
 };
 
 enum { CSG_GRAPH_XX, CSG_GRAPH_YY, CSG_GRAPH_XY };
@@ -53,9 +54,12 @@ typedef enum csg_graph_columns {
     CSG_COLUMNS_UNKNOWN
 } csg_graph_columns;
 
-typedef struct csg_graph_part {
-    double area, line, bent; /* integrals of 1, of the linear part, of that and the bends */
-} csg_graph_part;
+/* Points and weights by which functions of second order are integrated over a part of a patch. */
+typedef struct csg_graph_rule {
+    double at[CSG_GRAPH_POINTS][2], weight[CSG_GRAPH_POINTS];
+    double area;
+    int count;
+} csg_graph_rule;
 
 /* For a model that is valid in the ball around the cube. False: F may not fall. */
 bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, double half);
@@ -77,11 +81,8 @@ double csg_graph_patch_area(const csg_graph_patch *q);
 csg_graph_patch csg_graph_patch_half(const csg_graph_patch *q, int axis, int side);
 int csg_graph_patch_bent_axis(const csg_graph_patch *q);
 
-/* Where value + g . d > 0. Returns how many corners that has. */
-int csg_graph_patch_clip(const csg_graph_patch *q, double value,
-                         double polygon[CSG_GRAPH_CLIPPED][2]);
-double csg_graph_patch_triangle(const double *a, const double *b, const double *c);
-csg_graph_part csg_graph_patch_find_part(const csg_graph_patch *q, double value);
+/* Of the part where value + g . d > 0: the middles of the edges of its triangles. */
+csg_graph_rule csg_graph_patch_rule(const csg_graph_patch *q, double value);
 
 /* The integral of max(z - level, 0) over it; what is open of that is added to *open. */
 double csg_graph_patch_above(const csg_graph_patch *q, double level, double *open);

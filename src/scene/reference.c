@@ -363,7 +363,8 @@ csg_vec3 csg_reference_true_gradient(csg_reference_room *room, const csgm_scene 
     return csg_vec3_make(slope[0], slope[1], slope[2]);
 }
 
-csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+static csg_sample evaluate_once(const csgm_scene *scene, csg_vec3 p, bool is_true,
+                                csgm_status *status)
 {
     double stack[STACK_BYTES / sizeof(double)];
     workspace w;
@@ -371,25 +372,21 @@ csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *
         *status = CSGM_ERR_MEMORY;
         return (csg_sample){NAN, {0, 0, 0}};
     }
-    place_points(&w, scene, 0, scene->root, p);
-    evaluate(&w, scene, 0, scene->root);
-    csg_sample root = w.samples[scene->root];
+    csg_sample root = csg_reference_below(&w, scene, 0, scene->root, p);
+    if (is_true)
+        root.gradient = csg_reference_true_gradient(&w, scene, 0, scene->root, p, root);
     csg_reference_room_end(&w, scene);
     return root;
 }
 
+csg_sample csg_reference_eval(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
+{
+    return evaluate_once(scene, p, false, status);
+}
+
 csg_sample csg_reference_look(const csgm_scene *scene, csg_vec3 p, csgm_status *status)
 {
-    double stack[STACK_BYTES / sizeof(double)];
-    workspace w;
-    if (!begin_room(&w, scene, stack)) {
-        *status = CSGM_ERR_MEMORY;
-        return (csg_sample){NAN, {NAN, NAN, NAN}};
-    }
-    csg_sample root = csg_reference_below(&w, scene, 0, scene->root, p);
-    root.gradient = csg_reference_true_gradient(&w, scene, 0, scene->root, p, root);
-    csg_reference_room_end(&w, scene);
-    return root;
+    return evaluate_once(scene, p, true, status);
 }
 
 /* Marks the node's children that can change its value by setting points[child].x to 1. */

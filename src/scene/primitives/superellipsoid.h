@@ -145,6 +145,8 @@ static inline bool csg_superellipsoid_smooth(const csg_smooth_leaf *l, csg_smoot
 {
     const double q = (double)l->own[3], p = (double)l->own[4];
     csg_taylor parts[3], across, sum;
+    if (l->with_slopes)
+        return false;
     for (int i = 0; i < 3; i++) {
         csg_taylor share = csg_taylor_scaled(&l->p[i].f, 1 / (double)l->own[i]);
         if (!csg_taylor_power(&share, i < 2 ? q : p, l->radius, &parts[i]))
@@ -154,7 +156,7 @@ static inline bool csg_superellipsoid_smooth(const csg_smooth_leaf *l, csg_smoot
     if (p != q && !csg_taylor_power(&across, p / q, l->radius, &across))
         return false;
     sum = csg_taylor_sum(&across, 1, &parts[2]);
-    if (l->with_slopes || !csg_taylor_power(&sum, 1 / p, l->radius, &sum))
+    if (!csg_taylor_power(&sum, 1 / p, l->radius, &sum))
         return false;
     out->f = csg_taylor_scaled(&sum, -(double)l->own[5]);
     out->f.value += (double)l->own[5];
