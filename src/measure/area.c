@@ -203,9 +203,10 @@ static void take_group(const csg_halves *halves, double half, const csg_section_
     add_up_to(a, fmin(most_of(g, half), seen.most > 0 ? seen.most / g->cosine : 0));
 }
 
-/* How much of the cube's faces is in the solid. f: the field's model, or NULL; it knows that closer
- * than planes do. */
-static void find_faces(double half, const csg_halves *halves, const csg_taylor *f, account *a)
+/* How much of the cube's faces is in the solid. f: the field's models, or NULL; they know that
+ * closer than planes do. */
+static void find_faces(double half, const csg_halves *halves, const csg_taylor_pieces *f,
+                       account *a)
 {
     double whole = face_of(half), area, error;
     for (int i = 0; i < FACES; i++) {
@@ -217,37 +218,50 @@ static void find_faces(double half, const csg_halves *halves, const csg_taylor *
     }
 }
 
-/* The planes around a smooth field, whose gradients are known all over the cube. False: they turn
- * too far to be of use. */
-static bool enclose_smooth(const csg_measure_cube *q, csg_taylor *f, csg_halves *halves)
+static double length_of(const double v[3])
 {
-    static const double MOST = 0.5; /* of the slope */
-    double radius = csg_enclosure_radius(q->half), square = 0;
-    csg_enclosure *e = &halves->planes[0];
-    if (!csg_tape_taylor(&q->tape, q->c, radius, f))
-        return false;
-    csg_taylor rest = *f;
-    memset(rest.slope, 0, sizeof rest.slope);
-    *e = (csg_enclosure){.value = f->value, .stray = csg_taylor_stray(f, radius)};
-    memcpy(e->slope, f->slope, sizeof e->slope);
-    e->below = e->above = csg_taylor_reach(&rest, radius);
-    for (int k = 0; k < 3; k++)
-        square += e->slope[k] * e->slope[k];
-    halves->plane_count = halves->length = 1;
-    halves->code[0] = 0;
-    return e->stray < MOST * sqrt(square);
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static csg_section excess_of(const csg_taylor *f, double half)
+/* The planes around all pieces of a field, whose gradients are known all over the cube. False: they
+ * turn too far to be of use. */
+static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_halves *halves)
+{
+    static const double MOST = 0.5; /* of the slope */
+    double radius = csg_enclosure_radius(q->half);
+    csg_enclosure *e = &halves->planes[0];
+    if (!csg_tape_taylor_pieces(&q->tape, q->c, radius, f))
+        return false;
+    *e = (csg_enclosure){.value = 0};
+    for (int i = 0; i < f->count; i++) {
+        e->value += f->of[i].f.value / f->count;
+        for (int k = 0; k < 3; k++)
+            e->slope[k] += f->of[i].f.slope[k] / f->count;
+    }
+    for (int i = 0; i < f->count; i++) {
+        csg_taylor rest = f->of[i].f;
+        rest.value -= e->value;
+        for (int k = 0; k < 3; k++)
+            rest.slope[k] -= e->slope[k];
+        e->below = fmax(e->below, -csg_taylor_least(&rest, radius));
+        e->above = fmax(e->above, csg_taylor_most(&rest, radius));
+        e->stray = fmax(e->stray, length_of(rest.slope) + csg_taylor_stray(&f->of[i].f, radius));
+    }
+    halves->plane_count = halves->length = 1;
+    halves->code[0] = 0;
+    return e->stray < MOST * length_of(e->slope);
+}
+
+static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], double half)
 {
     csg_section excess;
-    bool is_known = f && csg_graph_excess(f, half, &excess.least, &excess.most);
+    bool is_known = f && csg_graph_excess(f, slope, half, &excess.least, &excess.most);
     return is_known ? excess : (csg_section){0, INFINITY};
 }
 
 /* turn: how far neighbours' s may be from this one's. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
-                            const csg_taylor *f, double *turn)
+                            const csg_taylor_pieces *f, double *turn)
 {
     csg_section_group groups[CSG_HALVES_MOST];
     double half = q->half;
@@ -266,7 +280,7 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
         *turn = 0;
     else if (selected == CSG_TRUTH_YES)
         *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
-    take_graph(&groups[0], half, selected, excess_of(f, half), &a);
+    take_graph(&groups[0], half, selected, excess_of(f, halves->planes[0].slope, half), &a);
     return a;
 }
 
@@ -293,7 +307,7 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
                      csg_measure_cube *q, void *out)
 {
     csg_halves halves;
-    csg_taylor f;
+    csg_taylor_pieces f; /* not filled: they are large */
     double turn = 1;
     account *a = out;
     bool is_smooth = enclose_smooth(q, &f, &halves);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "measure/graph_patch.h"
+#include "measure/graph_field.h"
 
 /* ---- the solid ----------------------------------------------------------------------------------
  */
@@ -117,31 +117,28 @@ static void add_patch(const csg_graph_base *g, const csg_graph_patch *q, double 
         add_whole(g, q, s);
 }
 
-/* Of one of the first patches. False: it is not known. */
-static bool add_columns(const csg_graph_base *g, csg_graph_patch *q, solid *s)
+static void fill(void *user, const csg_graph_base *g, const csg_graph_patch *q)
 {
-    double area = csg_graph_patch_area(q);
-    csg_graph_room off;
-    switch (csg_graph_patch_place(g, q, &off)) {
-    case CSG_COLUMNS_EMPTY:
-        return true;
-    case CSG_COLUMNS_FULL:
-        add_full(g, q, s);
-        return true;
-    case CSG_COLUMNS_UNKNOWN:
-        return false;
-    case CSG_COLUMNS_CROSSED:
-        break;
-    }
-    double error = area * off.mean;
-    if (!csg_graph_patch_is_whole(g, q, off.most))
-        error =
-            fmin(error, csg_graph_patch_shown(
-                            g, q, csg_graph_patch_bend(q) + csg_graph_patch_third(q) + off.most) *
-                            off.most);
-    s->error += error;
-    add_patch(g, q, CSG_GRAPH_SHARE * error, CSG_GRAPH_HALVED, s);
-    return true;
+    add_full(g, q, user);
+}
+
+static double cross(void *user, const csg_graph_base *g, const csg_graph_patch *q,
+                    const csg_graph_room *off)
+{
+    double area = csg_graph_patch_area(q), shown = area;
+    if (!csg_graph_patch_is_whole(g, q, off->most))
+        shown = csg_graph_patch_shown(
+            g, q, csg_graph_patch_bend(q) + csg_graph_patch_third(q) + off->most);
+    add_patch(g, q, CSG_GRAPH_SHARE * fmin(area * off->mean, shown * off->most), CSG_GRAPH_HALVED,
+              user);
+    return shown;
+}
+
+/* Over one of the first patches. False: the surface may not be a graph there. */
+static bool add_columns(const csg_graph_field *g, const csg_graph_patch *first, solid *s)
+{
+    const csg_graph_visitor visitor = {.user = s, .cross = cross, .fill = fill};
+    return csg_graph_field_visit(g, first, &visitor, &s->error);
 }
 
 /* Of these integrals, in the field's axes. */
@@ -161,19 +158,19 @@ static void turn_back(const csg_graph_base *g, const double from[CSG_INTEGRALS],
 /* ---- the cube ----------------------------------------------------------------------------------
  */
 
-bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out)
+bool csg_graph_find(const csg_taylor_pieces *f, double half, csg_graph *out)
 {
     static const double ROUNDING = 1 + 1e-9;
-    csg_graph_base g;
+    csg_graph_field g; /* not filled: it is large */
     solid s = {.with_moments = true};
-    if (!csg_graph_patch_begin(&g, f, half))
+    if (!csg_graph_field_begin(&g, f, half))
         return false;
     for (int i = 0; i < CSG_GRAPH_SIDE * CSG_GRAPH_SIDE; i++) {
-        csg_graph_patch q = csg_graph_patch_first(&g, i);
+        csg_graph_patch q = csg_graph_patch_first(half, i);
         if (!add_columns(&g, &q, &s))
             return false;
     }
-    turn_back(&g, s.integrals, out->integrals);
+    turn_back(&g.bases[0], s.integrals, out->integrals);
     out->error = fmin((s.error + s.open) * ROUNDING, 8 * half * half * half);
     out->first = s.first * ROUNDING + out->error * half;
     out->second = s.second * ROUNDING + out->error * half * half;
@@ -198,16 +195,24 @@ static csg_taylor on_face(const csg_taylor *f, double at, int axis)
 /* A csg_graph_part of the cube's face over each piece of the face's own side, divided by how wide
  * it is along the axis: it is the same everywhere along that, and farthest from the centre at the
  * face. */
-bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double *area,
+bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double *area,
                     double *error)
 {
-    const csg_taylor face = on_face(f, side * half, axis);
+    csg_taylor_pieces faces; /* not filled: they are large */
     solid s = {.with_moments = false};
-    csg_graph_base g;
+    csg_graph_field g;
     double piece = half / CSG_GRAPH_SIDE, whole = 4 * half * half;
-    if (!csg_graph_patch_begin(&g, &face, half) || g.axes[2] == axis)
+    faces.count = f->count;
+    for (int i = 0; i < f->count; i++) {
+        const csg_taylor_piece *of = &f->of[i];
+        faces.of[i].f = on_face(&of->f, side * half, axis);
+        faces.of[i].condition_count = of->condition_count;
+        for (int n = 0; n < of->condition_count; n++)
+            faces.of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
+    }
+    if (!csg_graph_field_begin(&g, &faces, half) || g.bases[0].axes[2] == axis)
         return false;
-    int along = g.axes[0] == axis ? 0 : 1;
+    int along = g.bases[0].axes[0] == axis ? 0 : 1;
     for (int i = 0; i < CSG_GRAPH_SIDE; i++) {
         csg_graph_patch q = {.half = {piece, piece}};
         q.at[along] = half;

@@ -6,7 +6,7 @@
 #ifndef CSG_MEASURE_GRAPH_H
 #define CSG_MEASURE_GRAPH_H
 
-#include "base/taylor.h"
+#include "field/taylor/tape_taylor.h"
 #include "measure/cut.h"
 
 typedef struct csg_graph {
@@ -16,14 +16,16 @@ typedef struct csg_graph {
 } csg_graph;
 
 /* f: in the ball around the cube. False: the surface may not be a graph there. */
-bool csg_graph_find(const csg_taylor *f, double half, csg_graph *out);
+bool csg_graph_find(const csg_taylor_pieces *f, double half, csg_graph *out);
 
-/* What the surface's area in the cube is beside its flow along the plane's normal. */
-bool csg_graph_excess(const csg_taylor *f, double half, double *least, double *most);
+/* What the surface's area in the cube is beside its flow along the normal of planes of this
+ * slope. */
+bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double *least,
+                      double *most);
 
 /* Of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
  * solid, within *error of *area. False: the surface may not be a graph there. */
-bool csg_graph_face(const csg_taylor *f, double half, int axis, int side, double *area,
+bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double *area,
                     double *error);
 
 #endif

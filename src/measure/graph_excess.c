@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "measure/graph_patch.h"
+#include "measure/graph_field.h"
 
 /* The plane's gradient over the face; of A(p) = sqrt(1 + p^2) there its value. */
 typedef struct level {
@@ -139,28 +139,43 @@ static void add_excess(const csg_graph_base *g, const csg_graph_patch *q, const 
     sums[1] += fmin(sum + open, 0.5 * touched * all * all);
 }
 
-bool csg_graph_excess(const csg_taylor *f, double half, double *least, double *most)
+typedef struct excess {
+    level plane;
+    double sums[2];
+} excess;
+
+static double cross(void *user, const csg_graph_base *g, const csg_graph_patch *q,
+                    const csg_graph_room *off)
 {
-    double sums[2] = {0};
-    csg_graph_base g;
-    if (!csg_graph_patch_begin(&g, f, half))
+    excess *e = user;
+    double area = csg_graph_patch_area(q), most = tilt_of(q, &e->plane).most;
+    add_excess(g, q, &e->plane, off, CSG_GRAPH_SHARE * area * most * off->turned, CSG_GRAPH_HALVED,
+               e->sums);
+    return 0;
+}
+
+bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double *least,
+                      double *most)
+{
+    csg_graph_field g; /* not filled: it is large */
+    excess e = {.sums = {0}};
+    const csg_graph_visitor visitor = {.user = &e, .cross = cross};
+    double ignored;
+    if (!csg_graph_field_begin(&g, f, half))
         return false;
-    double steep = fabs(g.p.slope[2]);
-    level l = {.p = {g.p.slope[0] / steep, g.p.slope[1] / steep}};
-    l.whole = sqrt(1 + l.p[0] * l.p[0] + l.p[1] * l.p[1]);
+    const int *axes = g.bases[0].axes;
+    double steep = -g.bases[0].turn * slope[axes[2]], *p = e.plane.p;
+    if (!(steep > 0))
+        return false;
+    for (int k = 0; k < 2; k++)
+        p[k] = slope[axes[k]] / steep;
+    e.plane.whole = sqrt(1 + p[0] * p[0] + p[1] * p[1]);
     for (int i = 0; i < CSG_GRAPH_SIDE * CSG_GRAPH_SIDE; i++) {
-        csg_graph_patch q = csg_graph_patch_first(&g, i);
-        csg_graph_room off;
-        csg_graph_columns of = csg_graph_patch_place(&g, &q, &off);
-        if (of == CSG_COLUMNS_UNKNOWN)
+        csg_graph_patch q = csg_graph_patch_first(half, i);
+        if (!csg_graph_field_visit(&g, &q, &visitor, &ignored))
             return false;
-        if (of == CSG_COLUMNS_CROSSED) {
-            double enough =
-                CSG_GRAPH_SHARE * csg_graph_patch_area(&q) * tilt_of(&q, &l).most * off.turned;
-            add_excess(&g, &q, &l, &off, enough, CSG_GRAPH_HALVED, sums);
-        }
     }
-    *least = sums[0] * (1 - 1e-9);
-    *most = sums[1] * (1 + 1e-9);
+    *least = e.sums[0] * (1 - 1e-9);
+    *most = e.sums[1] * (1 + 1e-9);
     return isfinite(*most);
 }

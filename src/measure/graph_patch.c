@@ -11,30 +11,33 @@ static const double REACH = 3.5;
 
 enum { CORNERS = 4 };
 
-static void order_axes(csg_graph_base *g)
+static void order_axes(csg_graph_base *g, const double slope[3])
 {
-    const csg_taylor *f = g->f;
-    csg_taylor *p = &g->p;
     int up = 0;
     for (int k = 1; k < 3; k++)
-        up = fabs(f->slope[k]) > fabs(f->slope[up]) ? k : up;
-    g->turn = f->slope[up] > 0 ? -1 : 1;
+        up = fabs(slope[k]) > fabs(slope[up]) ? k : up;
+    g->turn = slope[up] > 0 ? -1 : 1;
     for (int i = 0; i < 3; i++)
         g->axes[i] = (up + 1 + i) % 3;
+}
+
+csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f)
+{
     const double sign[3] = {1, 1, g->turn};
     const int *axes = g->axes;
-    p->value = f->value;
+    csg_taylor p = *f;
     for (int i = 0; i < 3; i++) {
-        p->slope[i] = sign[i] * f->slope[axes[i]];
+        p.slope[i] = sign[i] * f->slope[axes[i]];
         for (int j = i; j < 3; j++) {
-            p->bend[csg_taylor_second[i][j]] =
+            p.bend[csg_taylor_second[i][j]] =
                 sign[i] * sign[j] * f->bend[csg_taylor_second[axes[i]][axes[j]]];
             for (int k = j; k < 3; k++)
-                p->third[csg_taylor_third[i][j][k]] =
+                p.third[csg_taylor_third[i][j][k]] =
                     sign[i] * sign[j] * sign[k] *
                     f->third[csg_taylor_third[axes[i]][axes[j]][axes[k]]];
         }
     }
+    return p;
 }
 
 /* With bounds over the cube and up to REACH: of the gradient's parts, of the Hessian H, of its last
@@ -61,7 +64,7 @@ static bool find_fall(csg_graph_base *g)
             all += bend[i][j] * bend[i][j];
         }
     }
-    double steep = fabs(p->slope[2]);
+    double steep = -p->slope[2];
     g->fall = steep - change[2];
     if (!(g->fall > LEAST * steep))
         return false;
@@ -387,20 +390,22 @@ csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch
                                                              : CSG_COLUMNS_UNKNOWN;
 }
 
-bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, double half)
+bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, const double slope[3],
+                           double half)
 {
     double most = 3 * half * half;
     g->f = f;
     g->half = half;
     g->room = f->error + f->quartic * most * most;
-    order_axes(g);
+    order_axes(g, slope);
+    g->p = csg_graph_patch_turned(g, f);
     return find_fall(g);
 }
 
-csg_graph_patch csg_graph_patch_first(const csg_graph_base *g, int i)
+csg_graph_patch csg_graph_patch_first(double half, int i)
 {
-    double half = g->half / CSG_GRAPH_SIDE;
-    return (csg_graph_patch){.at = {(2 * (i % CSG_GRAPH_SIDE) + 1) * half - g->half,
-                                    (2 * (i / CSG_GRAPH_SIDE) + 1) * half - g->half},
-                             .half = {half, half}};
+    double of = half / CSG_GRAPH_SIDE;
+    return (csg_graph_patch){.at = {(2 * (i % CSG_GRAPH_SIDE) + 1) * of - half,
+                                    (2 * (i / CSG_GRAPH_SIDE) + 1) * of - half},
+                             .half = {of, of}};
 }

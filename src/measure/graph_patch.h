@@ -61,11 +61,16 @@ typedef struct csg_graph_rule {
     int count;
 } csg_graph_rule;
 
-/* For a model that is valid in the ball around the cube. False: F may not fall. */
-bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, double half);
+/* For a model that is valid in the ball around the cube; z is the axis along which this slope is
+ * steepest. False: F may not fall. */
+bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, const double slope[3],
+                           double half);
+
+/* Another model in the same axes. */
+csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f);
 
 /* The first patches: where they are. */
-csg_graph_patch csg_graph_patch_first(const csg_graph_base *g, int i);
+csg_graph_patch csg_graph_patch_first(double half, int i);
 
 /* What its columns are in the cube; the surface, if they are crossed. */
 csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch *q,

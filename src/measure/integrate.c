@@ -107,9 +107,9 @@ static void add_graph(sum *s, const csg_measure_cube *q, csg_graph *g)
  * or may not be. */
 static double settle_smooth(const csg_measure_cube *q, sum *s)
 {
-    csg_taylor f;
+    csg_taylor_pieces f; /* not filled: they are large */
     csg_graph graph;
-    if (!csg_tape_taylor(&q->tape, q->c, csg_enclosure_radius(q->half), &f) ||
+    if (!csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f) ||
         !csg_graph_find(&f, q->half, &graph))
         return INFINITY;
     *s = (sum){.cut = volume_of(q)};

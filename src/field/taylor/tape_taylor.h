@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A tape's field in a ball as one Taylor model of third order (base/taylor.h), where the field is
  * smooth there: its leaves by their smooth pieces (scene/primitives/smooth.h), its blends as
- * functions of these.
+ * functions of these. Where it is not, as few models as tell it: one for each of the functions that
+ * it is somewhere in the ball.
  */
 #ifndef CSG_FIELD_TAPE_TAYLOR_H
 #define CSG_FIELD_TAPE_TAYLOR_H
@@ -9,9 +10,28 @@
 #include "base/taylor.h"
 #include "field/tape.h"
 
+enum { CSG_TAYLOR_PIECES = 6, CSG_TAYLOR_CONDITIONS = 6 };
+
+/* The field, wherever none of the conditions is negative. */
+typedef struct csg_taylor_piece {
+    csg_taylor f, conditions[CSG_TAYLOR_CONDITIONS];
+    int condition_count;
+} csg_taylor_piece;
+
+/* At each point of the ball the field is one of these. */
+typedef struct csg_taylor_pieces {
+    csg_taylor_piece of[CSG_TAYLOR_PIECES];
+    int count;
+} csg_taylor_pieces;
+
 /* Around c, in the tape's frame, with the rounding of the tape's parameters: what is enclosed is
  * the scene's field, or one that has its sign everywhere in the ball. For a tape that is valid
  * there. False: it is not smooth there, or not known to be. */
 bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg_taylor *out);
+
+/* The same in pieces. The field is continuous over the ball. False: they are too many, or not
+ * known. */
+bool csg_tape_taylor_pieces(const csg_tape *tape, const double c[3], double radius,
+                            csg_taylor_pieces *out);
 
 #endif

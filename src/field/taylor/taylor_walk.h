@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ * A walk over a tape that makes Taylor models of it: a stack of operands, as the tape's own
+ * evaluation has one. Where an operator is one of several smooth functions, as a blend that begins
+ * in the ball, the walk takes one of them, says where that is the field, and the tape is walked
+ * once for each: which one it takes is what its script says of that decision.
+ */
+#ifndef CSG_FIELD_TAYLOR_WALK_H
+#define CSG_FIELD_TAYLOR_WALK_H
+
+#include "field/taylor/tape_taylor.h"
+#include "scene/primitives/smooth.h"
+
+enum {
+    CSG_TAYLOR_NODES = 24 /* of a tape; more are not looked at */,
+    CSG_TAYLOR_DECISIONS = 4 /* of a walk */,
+    CSG_TAYLOR_OPTIONS = 4 /* of a decision */
+};
+
+typedef struct csg_taylor_operand {
+    csg_taylor f;
+    uint32_t node; /* the last of its subtree */
+    uint32_t leaf; /* where it is one alone */
+    bool is_known, is_leaf;
+} csg_taylor_operand;
+
+typedef struct csg_taylor_walk {
+    const csg_tape *tape;
+    const double *c;
+    double radius;
+    bool has_fillets;
+    bool signs[CSG_TAYLOR_NODES]; /* of each node: nothing but its sign matters */
+    csg_taylor_operand leaves[CSG_TAYLOR_NODES];
+    csg_taylor_operand stack[CSG_TAYLOR_NODES];
+    uint32_t top;
+    int script[CSG_TAYLOR_DECISIONS], options[CSG_TAYLOR_DECISIONS], decisions;
+    csg_taylor_piece *piece; /* the one that is made */
+    bool may_decide;
+} csg_taylor_walk;
+
+static inline double csg_taylor_walk_least(const csg_taylor_walk *w, const csg_taylor *a)
+{
+    return csg_taylor_least(a, w->radius);
+}
+
+static inline double csg_taylor_walk_most(const csg_taylor_walk *w, const csg_taylor *a)
+{
+    return csg_taylor_most(a, w->radius);
+}
+
+/* With its derivatives, if they are asked for. */
+bool csg_taylor_walk_leaf(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with_slopes,
+                          csg_smooth *out);
+
+/* One of the options that are possible somewhere in the ball, by the script if there are several;
+ * -1: there is none, or no more decisions may be left open. */
+int csg_taylor_walk_choose(csg_taylor_walk *w, const bool *possible, int count);
+
+/* The piece that is made is the field only where this is not negative; off: by floats. */
+void csg_taylor_walk_require(csg_taylor_walk *w, const csg_taylor *g, double off);
+
+/* Two that are the same but for rounding, as flush faces are: how far apart, at most. INFINITY:
+ * they are not. */
+double csg_taylor_walk_apart(const csg_taylor_walk *w, const csg_taylor *d);
+
+/* And their gradients, by no more than twice that over the radius. */
+void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double apart);
+
+/* What a float makes of a blend's length: values move by no more than it does, gradients' shares by
+ * as much of themselves. */
+void csg_taylor_walk_add_length(double length, csg_taylor *f);
+
+/* (a + b) / 2 + factor excess. */
+csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double factor,
+                                const csg_taylor *excess);
+
+/* The operators that take all their operands at once. False: the field is not known. */
+bool csg_taylor_walk_round(csg_taylor_walk *w, const csg_tape_node *node);
+bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool signs);
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ * A field in pieces (field/taylor/tape_taylor.h) as a graph over a face of a cube: all of them fall
+ * along one axis, so the field does. Its surface is one piece's at every point of the face; a patch
+ * over which more than one may be it is halved, and in the end what they differ by is left open.
+ */
+#ifndef CSG_MEASURE_GRAPH_FIELD_H
+#define CSG_MEASURE_GRAPH_FIELD_H
+
+#include "field/taylor/tape_taylor.h"
+#include "measure/graph_patch.h"
+
+typedef struct csg_graph_field {
+    csg_graph_base bases[CSG_TAYLOR_PIECES];                         /* of the same axes */
+    csg_taylor conditions[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS]; /* in these axes */
+    int condition_count[CSG_TAYLOR_PIECES];
+    int count;
+} csg_graph_field;
+
+/* For pieces that are valid in the ball around the cube and stay where they are. False: the surface
+ * may not be a graph. */
+bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half);
+
+typedef struct csg_graph_visitor {
+    void *user;
+    /* Patches which the surface crosses, by one piece and how far the surface may be from that.
+     * Returns how large a part of the patch may show the surface. */
+    double (*cross)(void *user, const csg_graph_base *g, const csg_graph_patch *q,
+                    const csg_graph_room *off);
+    /* Whose columns are in the solid. NULL: they do not matter. */
+    void (*fill)(void *user, const csg_graph_base *g, const csg_graph_patch *q);
+} csg_graph_visitor;
+
+/* Over one of the first patches. *error: what is added is of the volume between the graph and the
+ * surface, at most. False: the surface may not be a graph there. */
+bool csg_graph_field_visit(const csg_graph_field *g, const csg_graph_patch *first,
+                           const csg_graph_visitor *visitor, double *error);
+
+#endif
