@@ -187,8 +187,9 @@ static bool find_turn(const csg_taylor_walk *w, const csg_taylor_operand *a,
     double off = ROUNDING;
     for (int i = 0; i < 2; i++) {
         double square = 0;
-        if (!both[i]->is_leaf ||
-            !csg_taylor_walk_leaf(w, &w->tape->nodes[both[i]->leaf], true, &pieces[i]))
+        csg_smooth_choice choice = {.way = both[i]->way};
+        if (!both[i]->is_leaf || !csg_taylor_walk_leaf(w, both[i]->leaf, true,
+                                                       w->may_decide ? &choice : NULL, &pieces[i]))
             return false;
         for (int k = 0; k < 3; k++)
             square += pieces[i].g[k].value * pieces[i].g[k].value;

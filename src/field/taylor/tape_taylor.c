@@ -51,20 +51,29 @@ static double rounding_of(const csg_taylor_walk *w, const float *parameters)
            OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
 }
 
-bool csg_taylor_walk_leaf(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with_slopes,
-                          csg_smooth *out)
+bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_slopes,
+                          csg_smooth_choice *choice, csg_smooth *out)
 {
     static const double OF_DIRECTIONS = 1e-6; /* by floats of own parameters */
+    const csg_tape_node *leaf = &w->tape->nodes[index];
     const float *parameters = w->tape->parameters + leaf->parameters;
+    double raise = (double)parameters[CSG_LEAF_RAISE], sigma = (double)parameters[CSG_LEAF_SIGMA];
     csg_smooth_leaf l;
     csg_smooth own;
     double off = 0;
     if (!csg_op_is_primitive(leaf->op) || csg_node_is_curve(csg_op_node_kind(leaf->op)) ||
-        !place(w, leaf, with_slopes, &l, &off) ||
-        !csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
+        !place(w, leaf, with_slopes, &l, &off))
         return false;
-    *out = csg_smooth_line(&l, (double)parameters[CSG_LEAF_RAISE],
-                           (double)parameters[CSG_LEAF_SIGMA], &own);
+    l.choice = choice;
+    if (choice) {
+        choice->signs = w->signs[index] && raise * sigma >= 0;
+        choice->at_zero = w->signs[index] && !(fabs(raise) > 0);
+        choice->ways = 1;
+        choice->condition_count = 0;
+    }
+    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
+        return false;
+    *out = csg_smooth_line(&l, raise, sigma, &own);
     out->f.error += rounding_of(w, parameters) + off;
     out->f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
     if (leaf->warp) /* as far as what is curved turns by that, twice */
@@ -72,15 +81,38 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, const csg_tape_node *leaf, b
     return true;
 }
 
-static bool find_leaf(const csg_taylor_walk *w, uint32_t index, csg_taylor_operand *o)
+/* One of its formulas; *ways: how many there are. */
+static bool find_leaf(const csg_taylor_walk *w, uint32_t index, int way, int *ways,
+                      csg_taylor_leaf *out)
 {
+    csg_smooth_choice choice = {.way = way};
     csg_smooth piece;
-    if (!csg_taylor_walk_leaf(w, &w->tape->nodes[index], false, &piece))
+    csg_taylor_operand *o = &out->operand;
+    *o = (csg_taylor_operand){.is_known = false};
+    if (!csg_taylor_walk_leaf(w, index, false, w->may_decide ? &choice : NULL, &piece))
         return false;
-    o->f = piece.f;
-    o->leaf = index;
-    o->is_leaf = true;
+    *ways = w->may_decide ? choice.ways : 1;
+    *o = (csg_taylor_operand){
+        .f = piece.f, .leaf = index, .way = way, .is_known = true, .is_leaf = true};
+    out->condition_count = w->may_decide ? choice.condition_count : 0;
+    for (int i = 0; i < out->condition_count; i++) {
+        out->conditions[i] = choice.conditions[i];
+        out->conditions[i].error +=
+            rounding_of(w, w->tape->parameters + w->tape->nodes[index].parameters);
+    }
     return isfinite(o->f.value + o->f.error + o->f.quartic);
+}
+
+/* All of them; none, where one is not known. */
+static void find_ways(csg_taylor_walk *w, uint32_t index)
+{
+    int ways = 1, found = 0;
+    while (found < ways && ways <= CSG_SMOOTH_WAYS &&
+           find_leaf(w, index, found, &ways, &w->leaves[index][found]))
+        found++;
+    w->ways[index] = found == ways ? ways : 0;
+    if (found < ways)
+        w->leaves[index][0].operand = (csg_taylor_operand){.is_known = false};
 }
 
 /* ---- operators of two --------------------------------------------------------------------------
@@ -249,6 +281,19 @@ void csg_taylor_walk_require(csg_taylor_walk *w, const csg_taylor *g, double off
     p->conditions[p->condition_count++].error += off;
 }
 
+static bool push_leaf(csg_taylor_walk *w, uint32_t index)
+{
+    static const bool ALL[CSG_SMOOTH_WAYS] = {true, true, true, true};
+    int way = w->ways[index] > 1 ? csg_taylor_walk_choose(w, ALL, w->ways[index]) : 0;
+    if (way < 0)
+        return false;
+    const csg_taylor_leaf *leaf = &w->leaves[index][way];
+    w->stack[w->top++] = leaf->operand;
+    for (int i = 0; i < leaf->condition_count && leaf->operand.is_known; i++)
+        csg_taylor_walk_require(w, &leaf->conditions[i], 0);
+    return leaf->operand.is_known || w->has_fillets; /* a fillet may do without */
+}
+
 /* The script of the next piece. False: that was the last. */
 static bool advance(csg_taylor_walk *w)
 {
@@ -297,8 +342,7 @@ static bool walk(csg_taylor_walk *w)
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op)) {
-            known = w->leaves[i].is_known || w->has_fillets; /* a fillet may do without */
-            w->stack[w->top++] = w->leaves[i];
+            known = push_leaf(w, i);
         } else if (csg_op_is_round(node->op)) {
             known = csg_taylor_walk_round(w, node);
         } else if (csg_op_is_fillet(node->op)) {
@@ -327,14 +371,14 @@ static bool begin(csg_taylor_walk *w, const csg_tape *tape, const double c[3], d
     memset(w->script, 0, sizeof w->script);
     for (uint32_t i = 0; i < tape->count; i++)
         w->has_fillets |= csg_op_is_fillet(tape->nodes[i].op);
+    find_signs(w);
     for (uint32_t i = 0; i < tape->count; i++) {
         if (!csg_op_is_leaf(tape->nodes[i].op))
             continue;
-        w->leaves[i].is_known = find_leaf(w, i, &w->leaves[i]);
-        if (!w->leaves[i].is_known && !w->has_fillets)
+        find_ways(w, i);
+        if (!w->ways[i] && !w->has_fillets)
             return false;
     }
-    find_signs(w);
     return true;
 }
 

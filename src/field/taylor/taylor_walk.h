@@ -20,8 +20,16 @@ typedef struct csg_taylor_operand {
     csg_taylor f;
     uint32_t node; /* the last of its subtree */
     uint32_t leaf; /* where it is one alone */
+    int way;       /* and of its formulas one (scene/primitives/smooth.h) */
     bool is_known, is_leaf;
 } csg_taylor_operand;
+
+/* One of a leaf's formulas, and where it holds. */
+typedef struct csg_taylor_leaf {
+    csg_taylor_operand operand;
+    csg_taylor conditions[CSG_SMOOTH_CONDITIONS];
+    int condition_count;
+} csg_taylor_leaf;
 
 typedef struct csg_taylor_walk {
     const csg_tape *tape;
@@ -29,7 +37,8 @@ typedef struct csg_taylor_walk {
     double radius;
     bool has_fillets;
     bool signs[CSG_TAYLOR_NODES]; /* of each node: nothing but its sign matters */
-    csg_taylor_operand leaves[CSG_TAYLOR_NODES];
+    csg_taylor_leaf leaves[CSG_TAYLOR_NODES][CSG_SMOOTH_WAYS];
+    int ways[CSG_TAYLOR_NODES]; /* of each leaf, as far as they are known */
     csg_taylor_operand stack[CSG_TAYLOR_NODES];
     uint32_t top;
     int script[CSG_TAYLOR_DECISIONS], options[CSG_TAYLOR_DECISIONS], decisions;
@@ -47,9 +56,9 @@ static inline double csg_taylor_walk_most(const csg_taylor_walk *w, const csg_ta
     return csg_taylor_most(a, w->radius);
 }
 
-/* With its derivatives, if they are asked for. */
-bool csg_taylor_walk_leaf(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with_slopes,
-                          csg_smooth *out);
+/* With its derivatives, if they are asked for. choice: NULL, or the formula that is asked for. */
+bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t leaf, bool with_slopes,
+                          csg_smooth_choice *choice, csg_smooth *out);
 
 /* One of the options that are possible somewhere in the ball, by the script if there are several;
  * -1: there is none, or no more decisions may be left open. */

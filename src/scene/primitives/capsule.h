@@ -120,6 +120,32 @@ static inline bool csg_capsule_may_crease(const float *own, const float q[3], fl
     return csg_band_meets(b, fminf(own[2], own[2] + own[3]), INFINITY); /* on the axis */
 }
 
+/* Where a ball's end begins: of both the distance is one from the axis' segment. */
+static inline bool csg_capsule_choose(const csg_smooth_leaf *l, bool is_first, csg_smooth *out)
+{
+    const double h = (double)l->own[0], r1 = (double)l->own[2], slant = (double)l->own[4];
+    const double cosine = 1 / sqrt(1 + slant * slant);
+    static const bool BOTH[2] = {true, true};
+    csg_smooth rho, distance, z = l->p[2], beyond;
+    int way = csg_smooth_choose(l, BOTH, 2);
+    if (!csg_smooth_radial(l, &rho))
+        return false;
+    beyond = csg_smooth_line(l, is_first ? 0 : -h, 1, &z);
+    beyond = csg_smooth_sum(l, &beyond, -slant, &rho);
+    csg_smooth_require(l, is_first == (way == 0) ? 1 : -1, &beyond);
+    if (way == 0) {
+        csg_smooth side = csg_smooth_line(l, r1, -cosine, &rho);
+        *out = csg_smooth_sum(l, &side, -slant * cosine, &z);
+        return true;
+    }
+    const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &z};
+    z.f.value -= is_first ? 0 : h;
+    if (!csg_smooth_norm(l, p, 3, &distance))
+        return false;
+    *out = csg_smooth_line(l, is_first ? r1 : r1 + (double)l->own[3], -1, &distance);
+    return true;
+}
+
 /* Between the ends a cone's mantle, beyond them a ball. */
 static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
@@ -136,6 +162,9 @@ static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
         return true;
     }
     bool is_first = center + room < 0;
+    if (l->choice && center - room <= h && center + room >= 0 &&
+        (center - room > 0 || center + room < h))
+        return csg_capsule_choose(l, center + room < h, out);
     const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &z};
     z.f.value -= is_first ? 0 : h;
     if ((!is_first && !(center - room > h)) || !csg_smooth_norm(l, p, 3, &distance))

@@ -275,10 +275,27 @@ static inline bool csg_ellipsoid_may_crease(const float *own, const float q[3], 
     return csg_band_meets(b, least * least / fmaxf(own[0], fmaxf(own[1], own[2])), INFINITY);
 }
 
-/* Its distance has no closed form. */
+/* Its distance has no closed form. Where nothing but inside and outside of it matters
+ * a (1 - |x / axes|^2) / 2 does, a being the least semi-axis: near its surface that is no steeper
+ * than |x / axes|. */
 static inline bool csg_ellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    return false;
+    double least = fmin((double)l->own[0], fmin((double)l->own[1], (double)l->own[2])), far = 0;
+    csg_smooth sum;
+    if (!l->choice || !l->choice->at_zero || l->with_slopes)
+        return false;
+    l->choice->ways = 1;
+    sum.f = csg_taylor_constant(1);
+    for (int i = 0; i < 3; i++) {
+        double scale = 1 / (double)l->own[i], x = l->p[i].f.value * scale;
+        csg_taylor scaled = csg_taylor_scaled(&l->p[i].f, scale);
+        scaled = csg_taylor_square(&scaled, l->radius);
+        sum.f = csg_taylor_sum(&sum.f, -1, &scaled);
+        far += x * x;
+    }
+    double steep = fmax(sqrt(far) + l->reach / least, 1);
+    *out = csg_smooth_scaled(l, 0.5 * least / steep, &sum);
+    return true;
 }
 
 #endif

@@ -212,6 +212,46 @@ static inline bool csg_frustum_may_crease(const float *own, const float q[3], fl
     return b.high > own[6] || best <= reach + 2 * own[6];
 }
 
+/* Near the rim at one end, where the frustum has its side, the cap or the rim nearest. beyond: > 0,
+ * past the side's end. Where only the sign matters side and cap stand for the inside, too. */
+static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth *side,
+                                      const csg_smooth *cap, const csg_smooth *over,
+                                      const csg_smooth *beyond, bool is_acute, csg_smooth *out)
+{
+    enum { SIDE, CAP, RIM, WAYS };
+    const csg_smooth *const from_rim[2] = {over, cap};
+    const double round = (double)l->own[6];
+    csg_smooth distance;
+    bool is_outside = csg_smooth_is_positive(l, cap) || csg_smooth_is_positive(l, side);
+    const bool possible[WAYS] = {
+        !csg_smooth_is_positive(l, beyond), !csg_smooth_is_positive(l, over),
+        !csg_smooth_is_negative(l, beyond) && !csg_smooth_is_negative(l, over)};
+    int way = is_outside || l->choice->signs ? csg_smooth_choose(l, possible, WAYS) : -1;
+    switch (way) {
+    case SIDE:
+        csg_smooth_require(l, -1, beyond);
+        if (is_acute)
+            csg_smooth_require(l, -1, cap);
+        *out = csg_smooth_line(l, round, -1, side);
+        return true;
+    case CAP:
+        csg_smooth_require(l, -1, over);
+        if (is_acute)
+            csg_smooth_require(l, 1, cap);
+        *out = csg_smooth_line(l, round, -1, cap);
+        return true;
+    case RIM:
+        csg_smooth_require(l, 1, over);
+        csg_smooth_require(l, 1, beyond);
+        if (!csg_smooth_norm(l, from_rim, 2, &distance))
+            return false;
+        *out = csg_smooth_line(l, round, -1, &distance);
+        return true;
+    default:
+        return false;
+    }
+}
+
 /* The side, a cap, or, outside, a rim. About the axis the distance from it is no smooth function,
  * but a cap needs no more than bounds of it. */
 static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
@@ -250,11 +290,19 @@ static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     csg_smooth over = csg_smooth_line(l, -rim, 1, &rho);
     const csg_smooth *const from_rim[2] = {&over, &cap};
     bool is_past = end > 0 ? csg_smooth_is_positive(l, &past) : csg_smooth_is_negative(l, &along);
-    if (!(end * l->p[2].f.value > reach) || !is_past || !csg_smooth_is_positive(l, &over) ||
-        !csg_smooth_is_positive(l, &cap) || !csg_smooth_norm(l, from_rim, 2, &distance))
+    if (!(end * l->p[2].f.value > reach))
         return false;
-    *out = csg_smooth_line(l, (double)own[6], -1, &distance);
-    return true;
+    if (is_past && csg_smooth_is_positive(l, &over) && csg_smooth_is_positive(l, &cap)) {
+        if (!csg_smooth_norm(l, from_rim, 2, &distance))
+            return false;
+        *out = csg_smooth_line(l, (double)own[6], -1, &distance);
+        return true;
+    }
+    csg_smooth beyond = csg_smooth_scaled(l, end, end > 0 ? &past : &along);
+    bool has_one_end =
+        end > 0 ? csg_smooth_is_positive(l, &along) : csg_smooth_is_negative(l, &past);
+    return l->choice && has_one_end &&
+           csg_frustum_choose(l, &side, &cap, &over, &beyond, end * nz < 0, out);
 }
 
 #endif

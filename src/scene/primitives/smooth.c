@@ -51,12 +51,64 @@ bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int c
            (!l->with_slopes || find_slopes(l, u, count, out));
 }
 
+/* round less the distance from a face, an edge or a corner: where these coordinates are out. */
+static bool round_of_box(const csg_smooth_leaf *l, const csg_smooth *const *out_there, int outside,
+                         double round, csg_smooth *out)
+{
+    csg_smooth distance;
+    if (outside == 1) {
+        *out = csg_smooth_line(l, round, -1, out_there[0]);
+        return true;
+    }
+    if (!csg_smooth_norm(l, out_there, outside, &distance))
+        return false;
+    *out = csg_smooth_line(l, round, -1, &distance);
+    return true;
+}
+
+/* Which coordinates are out is open for one or two of them. Where only the sign matters a face
+ * alone stands for the inside, too. */
+static bool choose_of_box(const csg_smooth_leaf *l, const csg_smooth *over, int axes, double round,
+                          csg_smooth *out)
+{
+    enum { OPEN_MOST = 2 };
+    const csg_smooth *out_there[3], *open[OPEN_MOST];
+    bool possible[1 << OPEN_MOST];
+    int outside = 0, open_count = 0;
+    for (int i = 0; i < axes; i++) {
+        if (csg_smooth_is_positive(l, &over[i]))
+            out_there[outside++] = &over[i];
+        else if (csg_smooth_is_negative(l, &over[i]))
+            continue;
+        else if (open_count == OPEN_MOST)
+            return false;
+        else
+            open[open_count++] = &over[i];
+    }
+    if (!outside && !l->choice->signs)
+        return false;
+    for (int i = 0; i < 1 << open_count; i++)
+        possible[i] = i || outside;
+    int way = csg_smooth_choose(l, possible, 1 << open_count);
+    if (way < 0)
+        return false;
+    bool is_alone = !outside && !(way & (way - 1));
+    for (int i = 0; i < open_count; i++) {
+        bool is_out = way >> i & 1;
+        if (is_out)
+            out_there[outside++] = open[i];
+        if (!is_out || !is_alone)
+            csg_smooth_require(l, is_out ? 1 : -1, open[i]);
+    }
+    return round_of_box(l, out_there, outside, round, out);
+}
+
 /* A face where one coordinate is farther out than the others, which are inside; an edge or a corner
  * where two or three are out. */
 bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round, int axes,
                        csg_smooth *out)
 {
-    csg_smooth over[3], distance;
+    csg_smooth over[3];
     const csg_smooth *out_there[3];
     int outside = 0, inside = 0, widest = 0;
     for (int i = 0; i < axes; i++) {
@@ -81,9 +133,7 @@ bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round
         *out = csg_smooth_line(l, round, -1, &over[widest]);
         return true;
     }
-    if (outside < 2 || outside + inside < axes ||
-        !csg_smooth_norm(l, out_there, outside, &distance))
-        return false;
-    *out = csg_smooth_line(l, round, -1, &distance);
-    return true;
+    if (outside >= 2 && outside + inside == axes)
+        return round_of_box(l, out_there, outside, round, out);
+    return l->choice && choose_of_box(l, over, axes, round, out);
 }

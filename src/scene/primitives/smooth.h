@@ -16,6 +16,20 @@ typedef struct csg_smooth {
     csg_taylor f, g[3];
 } csg_smooth;
 
+enum { CSG_SMOOTH_WAYS = 4, CSG_SMOOTH_CONDITIONS = 3 };
+
+/* Of several formulas one, in a ball in which no one holds all over: it is the field, or where
+ * `signs` says that this is enough has its sign, wherever no condition is negative; and everywhere
+ * one of the ways is. */
+typedef struct csg_smooth_choice {
+    bool signs;   /* inside and outside matter alone, and what is inside is so in the end */
+    bool at_zero; /* inside and outside of the primitive itself matter alone */
+    int way;      /* which one is asked for */
+    int ways;     /* out: how many there are */
+    csg_taylor conditions[CSG_SMOOTH_CONDITIONS];
+    int condition_count;
+} csg_smooth_choice;
+
 /* A leaf in its own frame. */
 typedef struct csg_smooth_leaf {
     const float *own; /* parameters as packed */
@@ -23,7 +37,28 @@ typedef struct csg_smooth_leaf {
     double radius;    /* of the ball */
     double reach;     /* own coordinates in the ball are no farther from those at its centre */
     bool with_slopes;
+    csg_smooth_choice *choice; /* NULL: one formula has to hold all over the ball */
 } csg_smooth_leaf;
+
+/* The `way`th of these that are possible; -1: it is none. */
+static inline int csg_smooth_choose(const csg_smooth_leaf *l, const bool *possible, int count)
+{
+    csg_smooth_choice *c = l->choice;
+    int found = -1;
+    c->ways = 0;
+    for (int i = 0; i < count; i++)
+        if (possible[i] && c->ways++ == c->way)
+            found = i;
+    return found;
+}
+
+/* factor g is not negative where the formula holds. */
+static inline void csg_smooth_require(const csg_smooth_leaf *l, double factor, const csg_smooth *g)
+{
+    csg_smooth_choice *c = l->choice;
+    if (c->condition_count < CSG_SMOOTH_CONDITIONS)
+        c->conditions[c->condition_count++] = csg_taylor_scaled(&g->f, factor);
+}
 
 csg_smooth csg_smooth_sum(const csg_smooth_leaf *l, const csg_smooth *a, double factor,
                           const csg_smooth *b);
