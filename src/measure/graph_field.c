@@ -8,19 +8,26 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALVED_MOST = 6 };
+enum {
+    HALVED_MOST = 6,
+    LOOKS_MOST = 32 /* at parts of a first patch */
+};
 
 /* A patch by the surfaces of all pieces. */
 typedef struct choice {
     csg_graph_patch q[CSG_TAYLOR_PIECES];
     csg_graph_columns of[CSG_TAYLOR_PIECES];
+    csg_graph_patch where[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS];
 } choice;
 
 typedef struct visit {
     const csg_graph_field *g;
     const csg_graph_visitor *visitor;
     csg_graph_room off[CSG_TAYLOR_PIECES]; /* of the first patch */
+    double rooms[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS];
+    double steep[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS];
     double errors[CSG_TAYLOR_PIECES], more;
+    int looks;
 } visit;
 
 static double half_of(const csg_graph_field *g)
@@ -60,40 +67,92 @@ static void find_heights(const visit *v, const choice *c, int i, double *low, do
     *high = fmin(fmax(q->z + reach, -h), h);
 }
 
-/* Is the condition negative all over the piece's surface? change: how much it changes along the
- * face's axes, to which what it does is added. */
-static bool is_violated(const visit *v, const choice *c, int i, const csg_taylor *condition,
-                        double change[2])
+/* A condition along the piece's surface, or along the bottom or the top where it has none: to
+ * second order, and how far it may be from that; and how steep it is along z in the cube. */
+static void find_where(visit *v, choice *c, int i, int n)
 {
     const csg_graph_patch *q = &c->q[i];
-    double h = half_of(v->g), low, high, most = 3 * h * h;
-    find_heights(v, c, i, &low, &high);
-    bool is_whole = c->of[i] == CSG_COLUMNS_CROSSED && low > -h && high < h;
-    const double at[3] = {q->at[0], q->at[1], is_whole ? q->z : 0.5 * (low + high)};
-    const double box[3] = {q->half[0], q->half[1], 0.5 * (high - low)};
+    const csg_taylor *condition = &v->g->conditions[i][n];
+    csg_graph_patch *out = &c->where[i][n];
+    double h = half_of(v->g), most = 3 * h * h, line = csg_graph_patch_line(q);
+    double rest = csg_graph_patch_bend(q) + csg_graph_patch_third(q) + v->off[i].most;
+    bool is_crossed = c->of[i] == CSG_COLUMNS_CROSSED;
+    if (!is_crossed)
+        line = rest = 0;
+    const double at[3] = {q->at[0], q->at[1],
+                          is_crossed                      ? q->z
+                          : c->of[i] == CSG_COLUMNS_FULL  ? h
+                          : c->of[i] == CSG_COLUMNS_EMPTY ? -h
+                                                          : 0};
+    const double box[3] = {q->half[0], q->half[1], line + rest};
     const csg_taylor p = csg_taylor_moved(condition, at);
-    double reach = bends_in_box(&p, box) + p.error + p.quartic * most * most;
-    if (is_whole)
-        reach += fabs(p.slope[2]) *
-                 (csg_graph_patch_bend(q) + csg_graph_patch_third(q) + v->off[i].most);
-    else
-        reach += fabs(p.slope[2]) * box[2];
-    for (int k = 0; k < 2; k++) {
-        double along = fabs(p.slope[k] + (is_whole ? p.slope[2] * q->g[k] : 0)) * q->half[k];
-        change[k] += along;
-        reach += along;
+    const double *b = p.bend, zz = b[csg_taylor_second[2][2]], sz = p.slope[2];
+    double z[2] = {0, 0}, bends[3] = {0, 0, 0};
+    if (is_crossed) {
+        memcpy(z, q->g, sizeof z);
+        memcpy(bends, q->bend, sizeof bends);
     }
-    return p.value + reach < 0;
+    *out = (csg_graph_patch){.at = {q->at[0], q->at[1]},
+                             .half = {q->half[0], q->half[1]},
+                             .z = p.value,
+                             .g = {p.slope[0] + sz * z[0], p.slope[1] + sz * z[1]}};
+    for (int k = 0; k < 2; k++)
+        out->bend[k] = b[csg_taylor_second[k][k]] + 2 * b[csg_taylor_second[k][2]] * z[k] +
+                       zz * z[k] * z[k] + sz * bends[k];
+    out->bend[CSG_GRAPH_XY] = b[csg_taylor_second[0][1]] + b[csg_taylor_second[0][2]] * z[1] +
+                              b[csg_taylor_second[1][2]] * z[0] + zz * z[0] * z[1] +
+                              sz * bends[CSG_GRAPH_XY];
+    double across =
+        fabs(b[csg_taylor_second[0][2]]) * box[0] + fabs(b[csg_taylor_second[1][2]]) * box[1];
+    csg_taylor thirds = p;
+    memset(thirds.bend, 0, sizeof thirds.bend);
+    double bent = is_crossed ? csg_graph_patch_third(q) + v->off[i].most : 0;
+    v->rooms[i][n] = condition->error + condition->quartic * most * most +
+                     bends_in_box(&thirds, box) + fabs(sz) * bent +
+                     (across + fabs(zz) * (line + 0.5 * rest)) * rest;
+    const double wide[3] = {h, h, fmax(h, fabs(at[2])) + h};
+    v->steep[i][n] = fabs(sz);
+    for (int k = 0; k < 3; k++) {
+        v->steep[i][n] += fabs(b[csg_taylor_second[k][2]]) * wide[k];
+        for (int j = 0; j < 3; j++)
+            v->steep[i][n] += 0.5 * fabs(p.third[csg_taylor_third[j][k][2]]) * wide[k] * wide[j];
+    }
+}
+
+/* How far from that surface the heights in the cube are that belong to it. */
+static double beyond_of(const visit *v, const choice *c, int i)
+{
+    const csg_graph_patch *q = &c->q[i];
+    double h = half_of(v->g), reach = 0;
+    if (c->of[i] != CSG_COLUMNS_CROSSED)
+        return c->of[i] == CSG_COLUMNS_UNKNOWN ? h : 0;
+    reach = csg_graph_patch_line(q) + csg_graph_patch_bend(q) + csg_graph_patch_third(q) +
+            v->off[i].most;
+    return fmax(fabs(q->z) + reach - h, 0);
+}
+
+/* Is the condition negative wherever the piece's surface is? change: how much it changes along the
+ * face's axes, to which what it does is added. */
+static bool is_violated(const visit *v, const choice *c, int i, int n, double beyond,
+                        double change[2])
+{
+    const csg_graph_patch *w = &c->where[i][n];
+    for (int k = 0; k < 2; k++)
+        change[k] += fabs(w->g[k]) * w->half[k];
+    return w->z + csg_graph_patch_line(w) + csg_graph_patch_bend(w) + v->rooms[i][n] +
+               v->steep[i][n] * beyond <
+           0;
 }
 
 /* Of the pieces `alive` those that may be the field somewhere. */
 static uint32_t find_alive(const visit *v, const choice *c, uint32_t alive, double change[2])
 {
-    change[0] = change[1] = 0;
-    for (int i = 0; i < v->g->count; i++)
+    for (int i = 0; i < v->g->count; i++) {
+        double beyond = alive >> i & 1 ? beyond_of(v, c, i) : 0;
         for (int n = 0; n < v->g->condition_count[i] && alive >> i & 1; n++)
-            if (is_violated(v, c, i, &v->g->conditions[i][n], change))
+            if (is_violated(v, c, i, n, beyond, change))
                 alive &= ~(1u << i);
+    }
     return alive;
 }
 
@@ -165,20 +224,27 @@ static void take(visit *v, const choice *c, int i, const csg_graph_room *off)
     v->more += shown * (off->most - v->off[i].most);
 }
 
-static choice half_of_choice(const visit *v, const choice *c, int axis, int side)
+/* Of the pieces `alive`. */
+static void halve(const visit *v, const choice *c, uint32_t alive, int axis, int side, choice *out)
 {
-    choice out = *c;
-    for (int i = 0; i < v->g->count; i++)
-        out.q[i] = csg_graph_patch_half(&c->q[i], axis, side);
-    return out;
+    for (int i = 0; i < v->g->count; i++) {
+        if (!(alive >> i & 1))
+            continue;
+        out->of[i] = c->of[i];
+        out->q[i] = csg_graph_patch_half(&c->q[i], axis, side);
+        for (int n = 0; n < v->g->condition_count[i]; n++)
+            out->where[i][n] = csg_graph_patch_half(&c->where[i][n], axis, side);
+    }
 }
 
 static bool look(visit *v, const choice *c, uint32_t alive, int more)
 {
-    double change[2], apart = 0;
+    double change[2] = {0, 0}, apart = 0;
     int taken = -1;
     uint32_t all = alive, bits = 0;
     bool is_known = true;
+    if (++v->looks > LOOKS_MOST)
+        more = 0;
     if (alive & (alive - 1))
         all = alive = find_alive(v, c, alive, change);
     for (int i = 0; i < v->g->count; i++) {
@@ -206,7 +272,8 @@ static bool look(visit *v, const choice *c, uint32_t alive, int more)
         return false;
     int axis = change[1] > change[0];
     for (int side = -1; side <= 1; side += 2) {
-        choice half = half_of_choice(v, c, axis, side);
+        choice half; /* not filled: it is large */
+        halve(v, c, alive, axis, side, &half);
         if (!look(v, &half, alive, more - 1))
             return false;
     }
@@ -216,11 +283,21 @@ static bool look(visit *v, const choice *c, uint32_t alive, int more)
 bool csg_graph_field_visit(const csg_graph_field *g, const csg_graph_patch *first,
                            const csg_graph_visitor *visitor, double *error)
 {
-    visit v = {.g = g, .visitor = visitor};
+    visit v; /* not filled: it is large, as is the choice */
     choice c;
+    v.g = g;
+    v.visitor = visitor;
+    v.looks = 0;
+    v.more = 0;
     for (int i = 0; i < g->count; i++) {
         c.q[i] = *first;
-        c.of[i] = csg_graph_patch_place(&g->bases[i], &c.q[i], &v.off[i]);
+        c.of[i] = g->of[i];
+        v.off[i] = (csg_graph_room){.most = 0};
+        if (c.of[i] == CSG_COLUMNS_CROSSED)
+            c.of[i] = csg_graph_patch_place(&g->bases[i], &c.q[i], &v.off[i]);
+        v.errors[i] = 0;
+        for (int n = 0; n < g->condition_count[i] && g->count > 1; n++)
+            find_where(&v, &c, i, n);
     }
     if (!look(&v, &c, (1u << g->count) - 1, HALVED_MOST))
         return false;
@@ -234,16 +311,32 @@ bool csg_graph_field_visit(const csg_graph_field *g, const csg_graph_patch *firs
 /* ---- the axes ----------------------------------------------------------------------------------
  */
 
+/* Whether all of the cube is inside of the piece, or outside. */
+static csg_graph_columns state_of(const csg_taylor *f, double half)
+{
+    const double box[3] = {half, half, half};
+    double most = 3 * half * half,
+           reach = bends_in_box(f, box) + f->error + f->quartic * most * most;
+    for (int k = 0; k < 3; k++)
+        reach += fabs(f->slope[k]) * half;
+    return f->value > reach    ? CSG_COLUMNS_FULL
+           : f->value < -reach ? CSG_COLUMNS_EMPTY
+                               : CSG_COLUMNS_CROSSED;
+}
+
 bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half)
 {
     double slope[3] = {0};
     g->count = f->count;
-    for (int i = 0; i < f->count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int i = 0; i < f->count; i++) {
+        g->of[i] = f->count > 1 ? state_of(&f->of[i].f, half) : CSG_COLUMNS_CROSSED;
+        for (int k = 0; k < 3 && g->of[i] == CSG_COLUMNS_CROSSED; k++)
             slope[k] += f->of[i].f.slope[k];
+    }
     for (int i = 0; i < f->count; i++) {
         const csg_taylor_piece *piece = &f->of[i];
-        if (!csg_graph_patch_begin(&g->bases[i], &piece->f, slope, half))
+        csg_graph_patch_turn(&g->bases[i], &piece->f, slope, half);
+        if (g->of[i] == CSG_COLUMNS_CROSSED && !csg_graph_patch_begin(&g->bases[i]))
             return false;
         g->condition_count[i] = piece->condition_count;
         for (int n = 0; n < piece->condition_count; n++)

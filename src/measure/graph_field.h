@@ -13,6 +13,7 @@ typedef struct csg_graph_field {
     csg_graph_base bases[CSG_TAYLOR_PIECES];                         /* of the same axes */
     csg_taylor conditions[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS]; /* in these axes */
     int condition_count[CSG_TAYLOR_PIECES];
+    csg_graph_columns of[CSG_TAYLOR_PIECES]; /* all over the cube, unless they are crossed */
     int count;
 } csg_graph_field;
 

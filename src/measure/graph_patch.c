@@ -44,7 +44,7 @@ csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f)
  * row and of the third derivatives T. Along a unit vector u of the face, with q the tangent's
  * length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall and
  * |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall. False: F may not fall. */
-static bool find_fall(csg_graph_base *g)
+bool csg_graph_patch_begin(csg_graph_base *g)
 {
     static const double LEAST = 0.25;
     const csg_taylor *p = &g->p;
@@ -390,8 +390,8 @@ csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch
                                                              : CSG_COLUMNS_UNKNOWN;
 }
 
-bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, const double slope[3],
-                           double half)
+void csg_graph_patch_turn(csg_graph_base *g, const csg_taylor *f, const double slope[3],
+                          double half)
 {
     double most = 3 * half * half;
     g->f = f;
@@ -399,7 +399,6 @@ bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, const double 
     g->room = f->error + f->quartic * most * most;
     order_axes(g, slope);
     g->p = csg_graph_patch_turned(g, f);
-    return find_fall(g);
 }
 
 csg_graph_patch csg_graph_patch_first(double half, int i)

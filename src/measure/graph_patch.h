@@ -61,10 +61,13 @@ typedef struct csg_graph_rule {
     int count;
 } csg_graph_rule;
 
-/* For a model that is valid in the ball around the cube; z is the axis along which this slope is
- * steepest. False: F may not fall. */
-bool csg_graph_patch_begin(csg_graph_base *g, const csg_taylor *f, const double slope[3],
-                           double half);
+/* A model that is valid in the ball around the cube, in axes of which z is the one along which this
+ * slope is steepest. */
+void csg_graph_patch_turn(csg_graph_base *g, const csg_taylor *f, const double slope[3],
+                          double half);
+
+/* How it falls, of one that is turned. False: F may not fall. */
+bool csg_graph_patch_begin(csg_graph_base *g);
 
 /* Another model in the same axes. */
 csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f);
