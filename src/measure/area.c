@@ -206,12 +206,12 @@ static void take_group(const csg_halves *halves, double half, const csg_section_
 /* How much of the cube's faces is in the solid. f: the field's models, or NULL; they know that
  * closer than planes do. */
 static void find_faces(double half, const csg_halves *halves, const csg_taylor_pieces *f,
-                       account *a)
+                       double enough, account *a)
 {
     double whole = face_of(half), area, error;
     for (int i = 0; i < FACES; i++) {
         int axis = i / 2, side = i & 1 ? 1 : -1;
-        if (f && csg_graph_face(f, half, axis, side, &area, &error))
+        if (f && csg_graph_face(f, half, axis, side, enough, &area, &error))
             a->faces[i] = (csg_section){fmax(area - error, 0), fmin(area + error, whole)};
         else
             a->faces[i] = csg_section_of_face(halves, half, axis, side);
@@ -252,23 +252,24 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_
     return e->stray < MOST * length_of(e->slope);
 }
 
-static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], double half)
+static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], double half,
+                             double enough)
 {
     csg_section excess;
-    bool is_known = f && csg_graph_excess(f, slope, half, &excess.least, &excess.most);
+    bool is_known = f && csg_graph_excess(f, slope, half, enough, &excess.least, &excess.most);
     return is_known ? excess : (csg_section){0, INFINITY};
 }
 
 /* turn: how far neighbours' s may be from this one's. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
-                            const csg_taylor_pieces *f, double *turn)
+                            const csg_taylor_pieces *f, double enough, double *turn)
 {
     csg_section_group groups[CSG_HALVES_MOST];
     double half = q->half;
     int count = csg_section_find_groups(halves, half, groups);
     account a = {.low = 0};
     *turn = 1;
-    find_faces(half, halves, count == 1 ? f : NULL, &a);
+    find_faces(half, halves, count == 1 ? f : NULL, enough, &a);
     if (count != 1) {
         for (int i = 0; i < count; i++)
             take_group(halves, half, &groups[i], is_selected(j, q, halves, &groups[i]), &a);
@@ -280,7 +281,7 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
         *turn = 0;
     else if (selected == CSG_TRUTH_YES)
         *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
-    take_graph(&groups[0], half, selected, excess_of(f, halves->planes[0].slope, half), &a);
+    take_graph(&groups[0], half, selected, excess_of(f, halves->planes[0].slope, half, enough), &a);
     return a;
 }
 
@@ -318,7 +319,7 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     else if (q->state != CSG_CELL_SURFACE)
         *a = plain(q->half, q->state);
     else
-        *a = find_account(user, q, &halves, is_smooth ? &f : NULL, &turn);
+        *a = find_account(user, q, &halves, is_smooth ? &f : NULL, worker->enough, &turn);
     return a->is_unbounded && q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
 }
 

@@ -135,9 +135,11 @@ static double cross(void *user, const csg_graph_base *g, const csg_graph_patch *
 }
 
 /* Over one of the first patches. False: the surface may not be a graph there. */
-static bool add_columns(const csg_graph_field *g, const csg_graph_patch *first, solid *s)
+static bool add_columns(const csg_graph_field *g, const csg_graph_patch *first, double enough,
+                        solid *s)
 {
-    const csg_graph_visitor visitor = {.user = s, .cross = cross, .fill = fill};
+    const csg_graph_visitor visitor = {
+        .user = s, .enough = enough, .enough_turned = INFINITY, .cross = cross, .fill = fill};
     return csg_graph_field_visit(g, first, &visitor, &s->error);
 }
 
@@ -158,7 +160,7 @@ static void turn_back(const csg_graph_base *g, const double from[CSG_INTEGRALS],
 /* ---- the cube ----------------------------------------------------------------------------------
  */
 
-bool csg_graph_find(const csg_taylor_pieces *f, double half, csg_graph *out)
+bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_graph *out)
 {
     static const double ROUNDING = 1 + 1e-9;
     csg_graph_field g; /* not filled: it is large */
@@ -167,7 +169,7 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, csg_graph *out)
         return false;
     for (int i = 0; i < CSG_GRAPH_SIDE * CSG_GRAPH_SIDE; i++) {
         csg_graph_patch q = csg_graph_patch_first(half, i);
-        if (!add_columns(&g, &q, &s))
+        if (!add_columns(&g, &q, CSG_GRAPH_LEAST * enough, &s))
             return false;
     }
     turn_back(&g.bases[0], s.integrals, out->integrals);
@@ -195,8 +197,8 @@ static csg_taylor on_face(const csg_taylor *f, double at, int axis)
 /* A csg_graph_part of the cube's face over each piece of the face's own side, divided by how wide
  * it is along the axis: it is the same everywhere along that, and farthest from the centre at the
  * face. */
-bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double *area,
-                    double *error)
+bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
+                    double *area, double *error)
 {
     csg_taylor_pieces faces; /* not filled: they are large */
     solid s = {.with_moments = false};
@@ -217,7 +219,7 @@ bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side,
         csg_graph_patch q = {.half = {piece, piece}};
         q.at[along] = half;
         q.at[1 - along] = (2 * i + 1) * piece - half;
-        if (!add_columns(&g, &q, &s))
+        if (!add_columns(&g, &q, CSG_GRAPH_LEAST * 2 * piece * enough, &s))
             return false;
     }
     *area = s.integrals[CSG_INTEGRAL_ONE] / (2 * piece);

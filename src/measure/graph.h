@@ -15,17 +15,18 @@ typedef struct csg_graph {
     double first, second;            /* of the first and second moments */
 } csg_graph;
 
-/* f: in the ball around the cube. False: the surface may not be a graph there. */
-bool csg_graph_find(const csg_taylor_pieces *f, double half, csg_graph *out);
+/* f: in the ball around the cube. enough: what may be left open costs no more time; 0: as little as
+ * can be is. False: the surface may not be a graph there. */
+bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_graph *out);
 
 /* What the surface's area in the cube is beside its flow along the normal of planes of this
  * slope. */
-bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double *least,
-                      double *most);
+bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double enough,
+                      double *least, double *most);
 
 /* Of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
  * solid, within *error of *area. False: the surface may not be a graph there. */
-bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double *area,
-                    double *error);
+bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
+                    double *area, double *error);
 
 #endif

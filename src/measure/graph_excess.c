@@ -154,12 +154,13 @@ static double cross(void *user, const csg_graph_base *g, const csg_graph_patch *
     return 0;
 }
 
-bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double *least,
-                      double *most)
+bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double enough,
+                      double *least, double *most)
 {
     csg_graph_field g; /* not filled: it is large */
     excess e = {.sums = {0}};
-    const csg_graph_visitor visitor = {.user = &e, .cross = cross};
+    const csg_graph_visitor visitor = {
+        .user = &e, .enough = INFINITY, .enough_turned = CSG_GRAPH_LEAST * enough, .cross = cross};
     double ignored;
     if (!csg_graph_field_begin(&g, f, half))
         return false;

@@ -27,6 +27,7 @@ typedef struct visit {
     double rooms[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS];
     double steep[CSG_TAYLOR_PIECES][CSG_TAYLOR_CONDITIONS];
     double errors[CSG_TAYLOR_PIECES], more;
+    double area; /* of the first patch */
     int looks;
 } visit;
 
@@ -224,6 +225,16 @@ static void take(visit *v, const choice *c, int i, const csg_graph_room *off)
     v->more += shown * (off->most - v->off[i].most);
 }
 
+/* Parts of a patch share by the roots of their areas: they stand side by side along lines. */
+static bool is_enough(const visit *v, const choice *c, int i, const csg_graph_room *off,
+                      double apart)
+{
+    double area = csg_graph_patch_area(&c->q[i]), share = sqrt(area / v->area);
+    return apart <= CSG_GRAPH_SHARE * v->off[i].mean ||
+           (apart * area <= v->visitor->enough * share &&
+            (off->turned - v->off[i].turned) * area <= v->visitor->enough_turned * share);
+}
+
 /* Of the pieces `alive`. */
 static void halve(const visit *v, const choice *c, uint32_t alive, int axis, int side, choice *out)
 {
@@ -263,7 +274,7 @@ static bool look(visit *v, const choice *c, uint32_t alive, int more)
     }
     if (is_known) {
         csg_graph_room off = room_of(v, c, all, taken, &apart);
-        if (apart <= CSG_GRAPH_SHARE * v->off[taken].mean || !more) {
+        if (is_enough(v, c, taken, &off, apart) || !more) {
             take(v, c, taken, &off);
             return true;
         }
@@ -288,6 +299,7 @@ bool csg_graph_field_visit(const csg_graph_field *g, const csg_graph_patch *firs
     v.g = g;
     v.visitor = visitor;
     v.looks = 0;
+    v.area = csg_graph_patch_area(first);
     v.more = 0;
     for (int i = 0; i < g->count; i++) {
         c.q[i] = *first;

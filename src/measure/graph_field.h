@@ -23,6 +23,9 @@ bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, doubl
 
 typedef struct csg_graph_visitor {
     void *user;
+    /* What may be left open where it is not told which piece it is, of a first patch: of the
+     * volume; of the surface's gradient, times the patch's area. */
+    double enough, enough_turned;
     /* Patches which the surface crosses, by one piece and how far the surface may be from that.
      * Returns how large a part of the patch may show the surface. */
     double (*cross)(void *user, const csg_graph_base *g, const csg_graph_patch *q,

@@ -23,6 +23,9 @@ enum { CSG_GRAPH_XXX, CSG_GRAPH_XXY, CSG_GRAPH_XYY, CSG_GRAPH_YYY };
 /* Of the error that is there anyhow: what may be left open where patches are cut. */
 static const double CSG_GRAPH_SHARE = 0.25;
 
+/* Of what a cube may leave open: a first patch, for one such reason. */
+static const double CSG_GRAPH_LEAST = 0.03;
+
 /* The surface over a rectangle of the face, by its derivatives at the middle. */
 typedef struct csg_graph_patch {
     double at[2], half[2];

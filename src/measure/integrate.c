@@ -105,12 +105,12 @@ static void add_graph(sum *s, const csg_measure_cube *q, csg_graph *g)
 
 /* Where the field is smooth in the cube. Returns what it leaves open; INFINITY: it is not smooth,
  * or may not be. */
-static double settle_smooth(const csg_measure_cube *q, sum *s)
+static double settle_smooth(const csg_measure_cube *q, double enough, sum *s)
 {
     csg_taylor_pieces f; /* not filled: they are large */
     csg_graph graph;
     if (!csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f) ||
-        !csg_graph_find(&f, q->half, &graph))
+        !csg_graph_find(&f, q->half, enough, &graph))
         return INFINITY;
     *s = (sum){.cut = volume_of(q)};
     add_graph(s, q, &graph);
@@ -125,7 +125,7 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     double known[CSG_INTEGRALS] = {0};
     csg_halves halves;
     sum *s = account;
-    double smooth = settle_smooth(q, s);
+    double smooth = settle_smooth(q, worker->enough, s);
     if (isfinite(smooth))
         return smooth;
     if (!csg_measure_enclose(walk, worker, q, &halves)) {

@@ -75,6 +75,7 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
 {
     rounds *r = user;
     csg_measure_worker *worker = &r->walk->workers[worker_index];
+    worker->enough = r->share;
     tally *kept = &r->tallies[index], now = {.worst = 0};
     if (kept->worst <= r->share || kept->is_full)
         return true;

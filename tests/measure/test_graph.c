@@ -380,7 +380,7 @@ static bool find_flow(const csg_taylor *f, double half, double *flow, double *of
     *flow = *off = 0;
     for (int i = 0; i < 6; i++) {
         double area, error, share = f->slope[i / 2] / slope;
-        if (!csg_graph_face(one(f), half, i / 2, i & 1 ? 1 : -1, &area, &error))
+        if (!csg_graph_face(one(f), half, i / 2, i & 1 ? 1 : -1, 0, &area, &error))
             return false;
         *flow += (i & 1 ? share : -share) * area;
         *off += fabs(share) * error;
@@ -399,7 +399,7 @@ static bool find_area(const csg_taylor *f, double half, int side, double between
                              small * (2 * (i / side / side) + 1 - side)};
         double flow, off, least, most;
         csg_taylor moved = csg_taylor_moved(f, c);
-        if (!csg_graph_excess(one(&moved), moved.slope, small, &least, &most) ||
+        if (!csg_graph_excess(one(&moved), moved.slope, small, 0, &least, &most) ||
             !find_flow(&moved, small, &flow, &off))
             return false;
         between[0] += flow - off + least;
@@ -426,7 +426,7 @@ static void try_parts(const csg_taylor *f, double half, const csg_graph *whole, 
         for (int k = 0; k < 3; k++)
             c[k] = small * (2 * of[k] + 1 - SIDE);
         csg_taylor moved = csg_taylor_moved(f, c);
-        if (!csg_graph_find(one(&moved), small, &part))
+        if (!csg_graph_find(one(&moved), small, 0, &part))
             return;
         csg_integrals_shift(part.integrals, c);
         for (int n = 0; n < CSG_INTEGRALS; n++)
@@ -464,7 +464,7 @@ static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
 {
     double whole = 8 * half * half * half, wanted[CSG_INTEGRALS], least, most;
     csg_graph graph;
-    if (!csg_graph_find(one(f), half, &graph))
+    if (!csg_graph_find(one(f), half, 0, &graph))
         return;
     int up = steepest_but(f, -1);
     add_columns(f, half, up, -1, 0, wanted);
@@ -480,7 +480,7 @@ static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
     try_parts(f, half, &graph, seen);
     try_area_of_parts(f, half, seen);
     double off, excess = excess_of(f, half, up, &off);
-    assert_true(csg_graph_excess(one(f), f->slope, half, &least, &most));
+    assert_true(csg_graph_excess(one(f), f->slope, half, 0, &least, &most));
     off += 1e-9 * half * half;
     if (excess > most + off || excess < least - off)
         fail_msg("seed %" PRIu64 ": an area's excess of %g, %g to %g promised", seed, excess, least,
@@ -500,7 +500,7 @@ static void graphs_hold(void **state)
         csg_taylor f = random_polynomial(&random, half);
         try_solid(&f, half, &seen);
         int axis = (int)(i % 3), side = i % 2 ? 1 : -1;
-        if (csg_graph_face(one(&f), half, axis, side, &area, &error)) {
+        if (csg_graph_face(one(&f), half, axis, side, 0, &area, &error)) {
             double wanted[CSG_INTEGRALS];
             add_columns(&f, half, steepest_but(&f, axis), axis, side * half, wanted);
             if (fabs(area - wanted[0]) > error + 1e-3 * half * half)
