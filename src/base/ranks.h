@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * What several processes that make one mesh tell each other (csgmesh/ranks.h). Each stage ends with
- * an exchange that begins with everybody's status: where one has failed all stop there, so that
- * nobody waits for somebody who is gone. What is called by one rank is called by all, in one order.
+ * an exchange that begins with everybody's status: where one has failed all stop there, and later
+ * exchanges of the same mesh say so at once, so that nobody waits for somebody who is gone. What is
+ * called by one rank is called by all, in one order; a rank that fails on the way goes to the end,
+ * and meets the others in their next exchange, whichever it is.
  */
 #ifndef CSG_BASE_RANKS_H
 #define CSG_BASE_RANKS_H
@@ -20,6 +22,10 @@ typedef struct csg_ranks {
     csg_rank_word *words; /* one for each rank, of the exchange at hand */
     uint64_t *bytes;      /* of each rank in it */
     csgm_rank_work work;
+    /* One has failed, or an exchange has, and all know it: of this mesh nothing is exchanged any
+     * more, since some are on their way out and others are not there yet. */
+    bool is_over;
+    csgm_status over; /* how it has ended */
     /* What a later job can go on with (csgm_context_keep). */
     char *folder; /* where: NULL, nothing is kept */
     size_t folder_bytes;
@@ -44,6 +50,8 @@ static inline bool csg_ranks_is_first(const csgm_context *context)
     return !context->ranks || context->ranks->by.rank == 0;
 }
 
+/* Another mesh begins: nothing of it has failed, and no rank has done anything. */
+void csg_ranks_begin_mesh(csgm_context *context);
 /* The mesh at hand is done with. */
 void csg_ranks_end_keeping(csgm_context *context);
 

@@ -108,6 +108,40 @@ class Ranks(cli.CliTest):
         self.compare("parts", "parts.txt", "ply", (2,), "-r", 40)
         self.compare("colours", "blend.txt", "glb", (4,), "-r", 40)
 
+    def test_cells_that_follow(self):
+        """Without -r and -s, with what changes triangles after they are made, in parts and colours, for 1 to 7 ranks."""
+        self.write("parts.txt", PARTS)
+        self.write("blend.txt", cli.BLEND)
+        cross = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        mug = os.path.join(cli.SCENES, "parts", "mug.txt")
+        for name, scene, extension, counts, *options in (("sharp", cross, "ply", RANKS),
+                                                         ("smooth", cross, "stl", (2,), "--features", "smooth", "--quality", "draft"),
+                                                         ("within", cross, "ply", (2, 7), "-e", 0.05),
+                                                         ("budget", cross, "glb", (4,), "--triangles", 3000),
+                                                         ("curved", mug, "ply", (4,), "--quality", "draft"),
+                                                         ("improved", cross, "obj", (4,), "--quality", "draft", "--improve"),
+                                                         ("equal", cross, "ply", (3,), "-r", 40, "--simplify", 0.02),
+                                                         ("equal within", cross, "ply", (3,), "-r", 40, "-e", 0.05),
+                                                         ("threads", cross, "ply", (3,), "-j", 2),
+                                                         ("parts", "parts.txt", "glb", (4,)), ("colours", "blend.txt", "ply", (7,))):
+            self.compare(name, scene, extension, counts, *map(str, options))
+
+    def test_warned_once(self):
+        """What is said of a mesh that all ranks have, the first says."""
+        self.write("half.txt", "sphere(r = 1);\n")
+        result = self.make(3, "half.txt", "-o", "a.ply", "--bounds", "-2,-2,-2,2,2,0.5", "--quality", "draft")
+        self.assertEqual(result.stderr.count("warning W0402"), 1, result.stderr)
+
+    def test_limits_of_replicated_work(self):
+        """A rank that has no more time or memory ends the job: one message, no file."""
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        for options, words in ((("--timeout", 0.2), "longer than the limit of 0.2 s"), (("--max-memory", "3M"), "memory")):
+            with self.subTest(words):
+                weak, strong = [scene, "-o", "a.ply", *options], [scene, "-o", "a.ply"]
+                result = self.run_job((3, PROGRAM, *weak))
+                self.assert_one_message(result, words)
+                self.assert_files()
+
     def test_fewer_cubes_than_ranks(self):
         self.write("ball.txt", cli.BALL)
         self.compare("ball", "ball.txt", "ply", (7,), "-r", 6)
@@ -147,8 +181,8 @@ class Ranks(cli.CliTest):
         self.assertLess(written, mesh)
         self.assertIn("--max-memory", written)
         self.write("ball.txt", cli.BALL)
-        self.assertEqual(mesh - written, {"--cells", "--depfile", "--improve", "--lod", "--quality", "--root", "--sandbox", "--simplify", "--smooth",
-                                          "--summary", "--tolerance", "--trace", "--triangles", "--watch"} & mesh)
+        self.assertEqual(mesh - written, {"--cells", "--depfile", "--lod", "--root", "--sandbox", "--smooth", "--summary", "--trace",
+                                          "--watch"} & mesh)
         result = self.run_job((1, PROGRAM, "ball.txt", "-r", 20, "-o", "a.ply", "--lod", 3))
         self.assert_one_message(result, "csgmesh-mpi has no --lod")
         if shutil.which("man"):
@@ -162,8 +196,8 @@ class Ranks(cli.CliTest):
 
     def test_refused(self):
         self.write("ball.txt", cli.BALL)
-        for options, words in (((), "give -r or -s"), (("-r", 20, "-e", 0.1), "changes none of the triangles"),
-                               (("-r", 20, "-o", "b.ply"), "one file")):
+        for options, words in ((("-r", 20, "-o", "b.ply"), "one file"), (("--lod", 3), "csgmesh-mpi has no --lod"),
+                               (("--resume", ), "cannot be kept")):
             with self.subTest(words):
                 result = self.run_job((2, PROGRAM, "ball.txt", "-o", "a.ply", *options))
                 self.assert_one_message(result, words)
