@@ -71,6 +71,10 @@ typedef struct csgm_rank_work {
     uint64_t received_bytes;      /* from other ranks */
     bool shared_again;      /* the frontier, by what was counted: all ranks have sampled twice */
     uint64_t resumed_cubes; /* counted, and made, by a job before this one: csgm_context_keep */
+    /* Items of loops that are shared out, of meshes that all ranks have: some bricks of cells, a
+     * cube of space in which triangles are thinned out. Vertices and triangles are then those that
+     * it made of cells, before they were thinned out, and as often as cells were divided again. */
+    uint64_t tasks;
 } csgm_rank_work;
 
 /* All zeros but struct_size. */

@@ -82,11 +82,27 @@ static csgm_status exchange(csgm_context *context, uint32_t to, const void *piec
     return CSGM_OK;
 }
 
+/* Whether all are at the end of the same loop. What they make is compared before, so this says that
+ * something has not come out alike on all. */
+static csgm_status compare_loops(csgm_context *context)
+{
+    const csg_ranks *ranks = context->ranks;
+    for (uint32_t i = 1; i < ranks->by.count; i++) {
+        if (ranks->words[i].items == ranks->words[0].items)
+            continue;
+        if (csg_ranks_is_first(context))
+            csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL, NULL,
+                           "rank %u has come to another mesh than rank 0", (unsigned)i);
+        return CSGM_ERR_INTERNAL;
+    }
+    return CSGM_OK;
+}
+
 /* Everybody's word; CSGM_OK where no rank has failed. */
 static csgm_status speak(csgm_context *context, csgm_status own, uint64_t bytes)
 {
     csg_ranks *ranks = context->ranks;
-    const csg_rank_word word = {.status = (uint64_t)own, .bytes = bytes};
+    const csg_rank_word word = {.status = (uint64_t)own, .bytes = bytes, .items = ranks->items};
     if (ranks->is_over)
         return own != CSGM_OK ? own : ranks->over;
     for (uint32_t i = 0; i < ranks->by.count; i++)
@@ -94,6 +110,8 @@ static csgm_status speak(csgm_context *context, csgm_status own, uint64_t bytes)
     csgm_status status = exchange(context, CSGM_ALL_RANKS, &word, ranks->words);
     for (uint32_t i = 0; i < ranks->by.count && status == CSGM_OK; i++)
         status = (csgm_status)ranks->words[i].status;
+    if (status == CSGM_OK)
+        status = compare_loops(context);
     if (status != CSGM_OK)
         end_mesh(ranks, status);
     return own != CSGM_OK ? own : status;
@@ -102,6 +120,13 @@ static csgm_status speak(csgm_context *context, csgm_status own, uint64_t bytes)
 csgm_status csg_ranks_agree(csgm_context *context, csgm_status own)
 {
     return context->ranks ? speak(context, own, 0) : own;
+}
+
+csgm_status csg_ranks_say_why(csgm_context *context, csgm_status own)
+{
+    if (context->ranks)
+        context->ranks->is_over = false;
+    return csg_ranks_agree(context, own);
 }
 
 /* How many bytes all have said to have. */

@@ -15,12 +15,14 @@
 /* What a rank says at the begin of an exchange. */
 typedef struct csg_rank_word {
     uint64_t status, bytes;
+    uint64_t items; /* of the loop whose records are exchanged (rank_loop.h); else 0 */
 } csg_rank_word;
 
 typedef struct csg_ranks {
     csgm_communicator by;
     csg_rank_word *words; /* one for each rank, of the exchange at hand */
     uint64_t *bytes;      /* of each rank in it */
+    uint64_t items; /* the same, of the exchange at hand: ranks that differ have gone astray */
     csgm_rank_work work;
     /* One has failed, or an exchange has, and all know it: of this mesh nothing is exchanged any
      * more, since some are on their way out and others are not there yet. */
@@ -58,7 +60,9 @@ void csg_ranks_end_keeping(csgm_context *context);
 /* How a stage ends that this rank has ended with `own`: CSGM_OK where all did; else `own`, or, not
  * reported here, what the first rank says that has failed. A process alone: `own`. */
 csgm_status csg_ranks_agree(csgm_context *context, csgm_status own);
-/* The same, and the pieces of all come to rank `to` or to all (CSGM_ALL_RANKS). Only with ranks. */
+/* The same where all come to, whatever has failed before: why it was, if it is known only now. */
+csgm_status csg_ranks_say_why(csgm_context *context, csgm_status own);
+/* As csg_ranks_agree, and the pieces of all come to rank `to` or to all (CSGM_ALL_RANKS). Only with ranks. */
 csgm_status csg_ranks_gather(csgm_context *context, csgm_status own, uint32_t to, const void *piece,
                              uint64_t bytes, csg_rank_pieces *out);
 /* The same into a place that has room for them all (NULL where none arrive): how many there are is

@@ -5,7 +5,8 @@
  * numbers of its vertices and of the halo's; features are found by the rank that has their block
  * and settled by all alike, in the order of one process. So the mesh is that of one process.
  *
- * Meshes that are reshaped, and those of cells that follow the shape, are whole on every rank.
+ * Meshes that are reshaped, and those of cells that follow the shape, are whole on every rank:
+ * there the loops over cells and cubes of space are shared out (base/rank_loop.h).
  */
 #ifndef CSG_MESH_PIPELINE_RANKS_H
 #define CSG_MESH_PIPELINE_RANKS_H

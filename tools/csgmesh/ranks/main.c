@@ -133,6 +133,7 @@ static void put_share(cli_json *json, const share *of)
     cli_json_open(json, NULL, '{');
     cli_json_count(json, "cubes", of->work.cubes);
     cli_json_count(json, "halo_cubes", of->work.halo_cubes);
+    cli_json_count(json, "tasks", of->work.tasks);
     cli_json_count(json, "vertices", of->work.vertices);
     cli_json_count(json, "triangles", of->work.triangles);
     cli_json_count(json, "received_bytes", of->work.received_bytes);
