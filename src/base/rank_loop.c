@@ -36,15 +36,20 @@ static void poll_own(void *user, size_t done, size_t count)
     s->poll(s->user, done, count);
 }
 
+/* How many items of a loop that is shared out are this rank's. */
+static size_t share_of(const csg_ranks *ranks, size_t count)
+{
+    return ranks->by.rank < count ? (count - ranks->by.rank - 1) / ranks->by.count + 1 : 0;
+}
+
 bool csg_ranks_run(csgm_context *context, size_t count, csg_item_size size, csg_pool_work *work,
                    csg_pool_poll *poll, void *user)
 {
-    csg_ranks *ranks = context->ranks;
+    const csg_ranks *ranks = context->ranks;
     if (!csg_ranks_share(context, count, size))
         return csg_pool_run(context->pool, count, work, poll, user);
     share own = {work, poll, user, ranks->by.rank, ranks->by.count};
-    size_t share_count = own.first < count ? (count - own.first - 1) / own.step + 1 : 0;
-    ranks->work.tasks += share_count;
+    size_t share_count = share_of(ranks, count);
     return csg_pool_run(context->pool, share_count, do_own, poll ? poll_own : NULL, &own);
 }
 
@@ -91,6 +96,7 @@ csgm_status csg_ranks_exchange(csgm_context *context, csgm_status own, size_t co
 {
     *out = (csg_record_reader){0};
     context->ranks->items = count;
+    context->ranks->work.tasks += own == CSGM_OK ? share_of(context->ranks, count) : 0;
     csgm_status status = csg_ranks_gather(context, own, CSGM_ALL_RANKS, records->bytes,
                                           records->count, &out->pieces);
     context->ranks->items = 0;
