@@ -341,6 +341,8 @@ static void test_same_bytes_reshaped(void **state)
         const rank like = {.text = cases[i].text, .path = many, .of = cases[i].of};
         mesh_by_all(ranks, &like, 0, NEVER, -1);
         assert_int_equal(ranks[0].status, CSGM_OK);
+        for (int k = 0; k < RANKS; k++)
+            assert_true(ranks[k].work.tasks > 0);
         assert_same_files(one, many);
         unlink(one);
         unlink(many);

@@ -170,6 +170,17 @@ class Ranks(cli.CliTest):
         for rank in stats["ranks"][:3]:
             self.assertGreater(rank["halo_cubes"], 0)
 
+    def test_stats_of_cells_that_follow(self):
+        """Each rank has its share of the work, of a mesh that all have."""
+        scene = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        stats = json.loads(self.make(3, scene, "-o", "a.ply", "--stats").stdout)
+        tasks = [rank["tasks"] for rank in stats["ranks"]]
+        self.assertLess(max(tasks), 1.2 * sum(tasks) / 3, tasks)
+        made = [rank["triangles"] for rank in stats["ranks"]]
+        self.assertLess(max(made), 1.2 * sum(made) / 3, made)
+        self.assertGreater(sum(made), stats["mesh"]["triangles"]) # before they are thinned out
+        self.assertGreater(min(rank["received_bytes"] for rank in stats["ranks"]), 1000)
+
     # ---- what it says of itself
 
     def test_page(self):
@@ -260,6 +271,19 @@ class Ranks(cli.CliTest):
                 self.assertNotEqual(job.returncode, 0)
                 self.assertNotIn(b"csgmesh: ", said)
                 self.assert_files()
+
+    def test_killed_rank_of_cells_that_follow(self):
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        line = self.job((3, PROGRAM, scene, "--quality", "fine", "-o", "a.ply"))
+        with subprocess.Popen(line, cwd=self.folder, env=self.environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as job:
+            deadline = time.monotonic() + 60
+            while self.seconds_of(1) < 1 and job.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            os.kill(self.process_of(1), signal.SIGKILL)
+            _, said = job.communicate(timeout=60)
+        self.assertNotEqual(job.returncode, 0)
+        self.assertNotIn(b"csgmesh: ", said)
+        self.assert_files()
 
     # ---- going on
 
@@ -354,6 +378,14 @@ class Ranks(cli.CliTest):
         self.assert_one_message(result, "two ranks or more")
         self.make(2, "a.txt", *tail) # a folder without a word in it is begun anew
         self.assert_files("a.txt", "b.txt", "a.ply", "c.ply.resume")
+
+    def seconds_of(self, rank):
+        """Its processor time in user mode; 0 before it is there."""
+        try:
+            with open(f"/proc/{self.process_of(rank)}/stat", encoding="ascii") as file:
+                return int(file.read().rpartition(")")[2].split()[11]) / os.sysconf("SC_CLK_TCK")
+        except (self.failureException, OSError):
+            return 0
 
     def process_of(self, rank):
         """The process that is this rank of the job in the test's folder."""
