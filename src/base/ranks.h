@@ -62,7 +62,8 @@ void csg_ranks_end_keeping(csgm_context *context);
 csgm_status csg_ranks_agree(csgm_context *context, csgm_status own);
 /* The same where all come to, whatever has failed before: why it was, if it is known only now. */
 csgm_status csg_ranks_say_why(csgm_context *context, csgm_status own);
-/* As csg_ranks_agree, and the pieces of all come to rank `to` or to all (CSGM_ALL_RANKS). Only with ranks. */
+/* As csg_ranks_agree, and the pieces of all come to rank `to` or to all (CSGM_ALL_RANKS). Only with
+ * ranks. */
 csgm_status csg_ranks_gather(csgm_context *context, csgm_status own, uint32_t to, const void *piece,
                              uint64_t bytes, csg_rank_pieces *out);
 /* The same into a place that has room for them all (NULL where none arrive): how many there are is
