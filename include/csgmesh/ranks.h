@@ -39,11 +39,12 @@ CSGM_API csgm_communicator csgm_communicator_default(void);
  * together: each calls them with the same field, options and path, and gets the same status; what
  * ended the work is reported on the ranks where it happened. The file has the bytes that one
  * process writes; rank 0 gives it its name. Of csgm_mesh_build rank 0 gets the mesh, the others one
- * without triangles. Cells are of one size: a tolerance, a quality and a number of triangles are
- * refused (CSGM_ERR_UNSUPPORTED, reported). PLY, STL and GLB of scenes without parts and materials
+ * without triangles. Of cells of one size PLY, STL and GLB of scenes without parts and materials
  * are written by all ranks at their final places, so that none has all of the mesh in memory; all
- * of them must see the file's folder. What else is made is gathered on rank 0 first. Limits of time
- * and memory are each rank's own.
+ * of them must see the file's folder. What else is made of such cells is gathered on rank 0 first.
+ * Where cells follow the shape, or the mesh is thinned out or improved, each rank has all of it in
+ * memory, the work is shared out, and rank 0 writes. Limits of time and memory are each rank's
+ * own. Warnings are reported on rank 0 only.
  *
  * The communicator is copied. NULL: this process is alone again. CSGM_ERR_ARGUMENT: a rank out of
  * range, or several without gather. */
@@ -70,6 +71,10 @@ typedef struct csgm_rank_work {
     uint64_t received_bytes;      /* from other ranks */
     bool shared_again;      /* the frontier, by what was counted: all ranks have sampled twice */
     uint64_t resumed_cubes; /* counted, and made, by a job before this one: csgm_context_keep */
+    /* Items of loops that are shared out, of meshes that all ranks have: some bricks of cells, a
+     * cube of space in which triangles are thinned out. Vertices and triangles are then those that
+     * it made of cells, before they were thinned out, and as often as cells were divided again. */
+    uint64_t tasks;
 } csgm_rank_work;
 
 /* All zeros but struct_size. */

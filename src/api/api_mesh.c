@@ -42,13 +42,6 @@ double csgm_quality_tolerance(csgm_quality quality, csgm_box bounds)
     return quality <= CSGM_QUALITY_FINE ? csg_mesh_quality_tolerance(quality, bounds) : 0;
 }
 
-/* What this rank does is counted for one mesh at a time. */
-static void begin_of_ranks(csgm_context *context)
-{
-    if (context->ranks)
-        context->ranks->work = csgm_rank_work_default();
-}
-
 /* At most one goal of thinning out. */
 static bool adopt_options(csgm_mesh_options *own, const csgm_mesh_options *given)
 {
@@ -70,7 +63,7 @@ csgm_status csgm_mesh_build(csgm_context *context, const csgm_field *field,
         !csg_struct_is_known(stats, sizeof *stats))
         return CSGM_ERR_ARGUMENT;
     csgm_mesh_stats made = csgm_mesh_stats_default();
-    begin_of_ranks(context);
+    csg_ranks_begin_mesh(context);
     csgm_status status = csg_mesh_build(context, field, &own, out, &made);
     csg_struct_deliver(stats, &made);
     return status;
@@ -101,9 +94,11 @@ static csgm_status refuse_to_keep(csgm_context *context)
     if (!context->ranks || !context->ranks->folder)
         return CSGM_OK;
     if (csg_ranks_is_first(context))
-        csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
-                       "binary PLY, STL or GLB of a scene without parts and materials can be kept",
-                       "what is finished cannot be kept: the first rank writes this mesh alone");
+        csg_diag_plain(
+            &context->diags, CSG_DIAG_RANKS_FAILED, NULL,
+            "binary PLY, STL or GLB of equal cells, of a scene without parts and materials, can "
+            "be kept",
+            "what is finished cannot be kept: the first rank writes this mesh alone");
     return CSGM_ERR_UNSUPPORTED;
 }
 
@@ -150,10 +145,8 @@ csgm_status csgm_mesh_build_file(csgm_context *context, const csgm_field *field,
     bool streams =
         csg_mesh_can_stream(field, options) &&
         csg_stream_is_possible(path, format, csg_mesh_distance(field, options), write_options);
-    begin_of_ranks(context);
-    csgm_status status = csg_mesh_check_ranks(context, options);
-    if (status == CSGM_OK)
-        status = csg_ranks_follow(context, status, &streams);
+    csg_ranks_begin_mesh(context);
+    csgm_status status = csg_ranks_follow(context, CSGM_OK, &streams);
     if (status == CSGM_OK && !streams)
         status = refuse_to_keep(context);
     if (status != CSGM_OK)

@@ -141,6 +141,10 @@ void csg_diag_report(csg_diag_sink *sink, csg_diag_code code, csgm_diag diag)
 {
     diag.code = (uint16_t)code;
     diag.severity = severity_here(sink, code, &diag);
+    if (sink->errors_only && (diag.lenient || csg_diag_severity(code) == CSGM_WARNING)) {
+        sink->mute_notes = true;
+        return;
+    }
     bool is_shown = csg_diag_is_shown(sink, code, &diag);
     if (diag.severity == CSGM_ERROR) {
         sink->errors++;

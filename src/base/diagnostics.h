@@ -38,6 +38,7 @@ typedef struct csg_diag_sink {
     void *user;
     bool warnings_as_errors;
     bool library_warnings;     /* warnings inside libraries are treated as all others */
+    bool errors_only;          /* somebody else says the warnings, who finds the same */
     bool mute_notes;           /* the last finding was not shown, or in short: drop its notes too */
     uint32_t errors, warnings; /* all of them, shown or not */
     uint32_t errors_more;      /* errors that were not shown */

@@ -18,6 +18,7 @@ csgm_status csg_ranks_join(csgm_context *context, const csgm_communicator *commu
                          .bytes = csg_memory_alloc(&context->memory, count * sizeof *ranks->bytes),
                          .work = {.struct_size = sizeof(csgm_rank_work)}};
     context->ranks = ranks;
+    context->diags.errors_only = communicator->rank > 0;
     if (ranks->words && ranks->bytes)
         return CSGM_OK;
     csg_ranks_leave(context);
@@ -36,6 +37,7 @@ void csg_ranks_leave(csgm_context *context)
     csg_memory_release(&context->memory, ranks->bytes, count * sizeof *ranks->bytes);
     csg_memory_release(&context->memory, ranks, sizeof *ranks);
     context->ranks = NULL;
+    context->diags.errors_only = false;
 }
 
 void csg_ranks_end_keeping(csgm_context *context)
@@ -47,6 +49,24 @@ void csg_ranks_end_keeping(csgm_context *context)
     ranks->keeps = false;
 }
 
+void csg_ranks_begin_mesh(csgm_context *context)
+{
+    csg_ranks *ranks = context->ranks;
+    if (!ranks)
+        return;
+    ranks->work = (csgm_rank_work){.struct_size = sizeof ranks->work};
+    ranks->is_over = false;
+    ranks->over = CSGM_OK;
+}
+
+/* From now on all are on their way out. */
+static csgm_status end_mesh(csg_ranks *ranks, csgm_status why)
+{
+    ranks->is_over = true;
+    ranks->over = why;
+    return why;
+}
+
 /* Bytes of all ranks to those that want them; ranks->bytes says how many. */
 static csgm_status exchange(csgm_context *context, uint32_t to, const void *piece, void *place)
 {
@@ -55,10 +75,26 @@ static csgm_status exchange(csgm_context *context, uint32_t to, const void *piec
     if (!by->gather(by->user, to, piece, ranks->bytes, place)) {
         csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL, NULL,
                        "rank %u could not exchange bytes with the others", (unsigned)by->rank);
-        return CSGM_ERR_IO;
+        return end_mesh(ranks, CSGM_ERR_IO);
     }
     for (uint32_t i = 0; place && i < by->count; i++)
         ranks->work.received_bytes += i != by->rank ? ranks->bytes[i] : 0;
+    return CSGM_OK;
+}
+
+/* Whether all are at the end of the same loop. What they make is compared before, so this says that
+ * something has not come out alike on all. */
+static csgm_status compare_loops(csgm_context *context)
+{
+    const csg_ranks *ranks = context->ranks;
+    for (uint32_t i = 1; i < ranks->by.count; i++) {
+        if (ranks->words[i].items == ranks->words[0].items)
+            continue;
+        if (csg_ranks_is_first(context))
+            csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL, NULL,
+                           "rank %u has come to another mesh than rank 0", (unsigned)i);
+        return CSGM_ERR_INTERNAL;
+    }
     return CSGM_OK;
 }
 
@@ -66,20 +102,31 @@ static csgm_status exchange(csgm_context *context, uint32_t to, const void *piec
 static csgm_status speak(csgm_context *context, csgm_status own, uint64_t bytes)
 {
     csg_ranks *ranks = context->ranks;
-    const csg_rank_word word = {.status = (uint64_t)own, .bytes = bytes};
+    const csg_rank_word word = {.status = (uint64_t)own, .bytes = bytes, .items = ranks->items};
+    if (ranks->is_over)
+        return own != CSGM_OK ? own : ranks->over;
     for (uint32_t i = 0; i < ranks->by.count; i++)
         ranks->bytes[i] = sizeof word;
     csgm_status status = exchange(context, CSGM_ALL_RANKS, &word, ranks->words);
-    if (status != CSGM_OK || own != CSGM_OK)
-        return own != CSGM_OK ? own : status;
     for (uint32_t i = 0; i < ranks->by.count && status == CSGM_OK; i++)
         status = (csgm_status)ranks->words[i].status;
-    return status;
+    if (status == CSGM_OK)
+        status = compare_loops(context);
+    if (status != CSGM_OK)
+        end_mesh(ranks, status);
+    return own != CSGM_OK ? own : status;
 }
 
 csgm_status csg_ranks_agree(csgm_context *context, csgm_status own)
 {
     return context->ranks ? speak(context, own, 0) : own;
+}
+
+csgm_status csg_ranks_say_why(csgm_context *context, csgm_status own)
+{
+    if (context->ranks)
+        context->ranks->is_over = false;
+    return csg_ranks_agree(context, own);
 }
 
 /* How many bytes all have said to have. */

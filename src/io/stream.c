@@ -337,7 +337,7 @@ csgm_status csg_stream_commit(csg_stream *s)
 
 csgm_status csg_stream_abandon(csg_stream *s)
 {
-    csgm_status status = csg_ranks_agree(s->view.context, report(s));
+    csgm_status status = csg_ranks_say_why(s->view.context, report(s));
     csg_file_abandon(&s->file);
     release(s);
     return status;

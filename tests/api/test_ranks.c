@@ -38,6 +38,21 @@ static const char parts_text[] =
     "part(\"b\") translate([2, 0, 0]) sphere(r = 0.7);\n"
     "part(\"none\") intersection() { cube(1); translate([3, 0, 0]) cube(1); }\n";
 
+/* What is asked of a mesh, beyond what all take. */
+typedef enum asked { EQUAL_CELLS, CELLS_THAT_FOLLOW, WITHIN, EQUAL_WITHIN, BETTER } asked;
+
+static csgm_mesh_options options_for(asked of)
+{
+    csgm_mesh_options options = csgm_mesh_options_default();
+    if (of == EQUAL_CELLS || of == EQUAL_WITHIN)
+        options.resolution = of == EQUAL_CELLS ? 40 : 24;
+    else
+        options.quality = CSGM_QUALITY_DRAFT;
+    options.tolerance = of == WITHIN || of == EQUAL_WITHIN ? 0.04 : 0;
+    options.improve = of == BETTER;
+    return options;
+}
+
 /* ---- ranks that are threads --------------------------------------------------------------------
  */
 
@@ -58,7 +73,8 @@ typedef struct rank {
     uint32_t index;
     const char *text, *path;
     const char *folder; /* csgm_context_keep; NULL: nothing is kept */
-    double tolerance;
+    asked of;
+    bool differs; /* rank 1 is asked for something else */
     failing memory;
     csgm_status status;
     int errors;
@@ -124,10 +140,9 @@ static csgm_status mesh_together(rank *r, csgm_context *context, const csgm_fiel
     by.count = RANKS;
     by.gather = gather;
     by.user = r;
-    csgm_mesh_options options = csgm_mesh_options_default();
+    csgm_mesh_options options = options_for(r->of);
     csgm_write_options write_options = csgm_write_options_default();
-    options.resolution = 40;
-    options.tolerance = r->tolerance;
+    options.simplify_error = r->differs && r->index == 1 ? 0.01 : 0;
     write_options.sync = false;
     long left = r->memory.left;
     r->memory.left = NEVER; /* joining is each one's own */
@@ -224,13 +239,12 @@ static char *read_all(const char *path, size_t *length)
     return bytes;
 }
 
-static void alone(const char *text, const char *path)
+static void alone(const char *text, const char *path, asked of)
 {
     csgm_context *context;
     csgm_scene *scene;
     csgm_field *field;
-    csgm_mesh_options options = csgm_mesh_options_default();
-    options.resolution = 40;
+    csgm_mesh_options options = options_for(of);
     assert_int_equal(csgm_context_create(NULL, &context), CSGM_OK);
     assert_int_equal(csgm_scene_parse(context, text, strlen(text), "test", NULL, &scene), CSGM_OK);
     assert_int_equal(csgm_field_compile(context, scene, &field), CSGM_OK);
@@ -269,7 +283,7 @@ static void test_same_bytes(void **state)
         rank ranks[RANKS];
         snprintf(one, sizeof one, "one.%s", cases[i].extension);
         snprintf(many, sizeof many, "many.%s", cases[i].extension);
-        alone(cases[i].text, one);
+        alone(cases[i].text, one, EQUAL_CELLS);
         const rank like = {.text = cases[i].text, .path = many};
         mesh_by_all(ranks, &like, 0, NEVER, -1);
         assert_int_equal(ranks[0].status, CSGM_OK);
@@ -298,13 +312,52 @@ static void test_mesh_on_the_first(void **state)
     assert_int_equal(ranks[1].triangles + ranks[2].triangles, 0);
 }
 
-static void test_refused(void **state)
+static void assert_same_files(const char *one, const char *other)
+{
+    size_t lengths[2];
+    char *a = read_all(one, &lengths[0]), *b = read_all(other, &lengths[1]);
+    assert_int_equal(lengths[0], lengths[1]);
+    assert_memory_equal(a, b, lengths[0]);
+    free(a);
+    free(b);
+}
+
+/* Cells that follow the shape, and meshes that are changed after they are made. */
+static void test_same_bytes_reshaped(void **state)
+{
+    static const struct {
+        const char *text, *extension;
+        asked of;
+    } cases[] = {{solid_text, "ply", CELLS_THAT_FOLLOW}, {solid_text, "glb", WITHIN},
+                 {solid_text, "ply", EQUAL_WITHIN},      {solid_text, "obj", BETTER},
+                 {parts_text, "glb", CELLS_THAT_FOLLOW}, {uneven_text, "stl", CELLS_THAT_FOLLOW}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char one[16], many[16];
+        rank ranks[RANKS];
+        snprintf(one, sizeof one, "one.%s", cases[i].extension);
+        snprintf(many, sizeof many, "many.%s", cases[i].extension);
+        alone(cases[i].text, one, cases[i].of);
+        const rank like = {.text = cases[i].text, .path = many, .of = cases[i].of};
+        mesh_by_all(ranks, &like, 0, NEVER, -1);
+        assert_int_equal(ranks[0].status, CSGM_OK);
+        for (int k = 0; k < RANKS; k++)
+            assert_true(ranks[k].work.tasks > 0);
+        assert_same_files(one, many);
+        unlink(one);
+        unlink(many);
+    }
+}
+
+/* Whose options are other is told once, by the first, before anything is made. */
+static void test_other_options(void **state)
 {
     rank ranks[RANKS];
-    const rank like = {.text = solid_text, .path = "a.ply", .tolerance = 0.01};
+    const rank like = {
+        .text = solid_text, .path = "a.ply", .of = CELLS_THAT_FOLLOW, .differs = true};
     (void)state;
     mesh_by_all(ranks, &like, 0, NEVER, -1);
-    assert_int_equal(ranks[0].status, CSGM_ERR_UNSUPPORTED);
+    assert_int_equal(ranks[0].status, CSGM_ERR_ARGUMENT);
     assert_int_equal(ranks[0].errors, 1);
     assert_int_equal(ranks[1].errors + ranks[2].errors, 0);
     assert_only(NULL);
@@ -342,13 +395,17 @@ static void test_failing_allocations(void **state)
 {
     static const struct {
         const char *text, *path;
-    } cases[] = {{solid_text, "a.glb"}, {parts_text, "a.ply"}, {solid_text, NULL}};
+        asked of;
+    } cases[] = {{solid_text, "a.glb", EQUAL_CELLS},
+                 {parts_text, "a.ply", EQUAL_CELLS},
+                 {solid_text, NULL, EQUAL_CELLS},
+                 {solid_text, "a.glb", WITHIN}};
     (void)state;
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
         for (uint32_t weak = 0; weak < RANKS; weak += 2) {
-            const rank like = {.text = cases[c].text, .path = cases[c].path};
+            const rank like = {.text = cases[c].text, .path = cases[c].path, .of = cases[c].of};
             int failures = 0;
-            for (long left = 0;; left += 1 + left / 12) {
+            for (long left = 0;; left += 1 + left / (like.of == EQUAL_CELLS ? 12 : 4)) {
                 rank ranks[RANKS];
                 mesh_by_all(ranks, &like, weak, left, -1);
                 if (ranks[0].status == CSGM_OK)
@@ -358,7 +415,7 @@ static void test_failing_allocations(void **state)
                 assert_int_equal(ranks[weak].errors, 1);
                 assert_only(NULL);
             }
-            assert_true(failures > 20);
+            assert_true(failures > (like.of == EQUAL_CELLS ? 20 : 12));
             if (cases[c].path)
                 unlink(cases[c].path);
         }
@@ -367,20 +424,23 @@ static void test_failing_allocations(void **state)
 /* The n-th exchange fails on all ranks. */
 static void test_failing_exchanges(void **state)
 {
-    rank ranks[RANKS];
-    const rank like = {.text = solid_text, .path = "a.ply"};
-    int failures = 0;
+    static const asked each[] = {EQUAL_CELLS, CELLS_THAT_FOLLOW};
     (void)state;
-    for (int n = 0;; n++) {
-        mesh_by_all(ranks, &like, 0, NEVER, n);
-        if (ranks[0].status == CSGM_OK)
-            break;
-        failures++;
-        assert_int_equal(ranks[0].status, CSGM_ERR_IO);
-        assert_true(ranks[0].errors > 0);
+    for (size_t i = 0; i < sizeof each / sizeof *each; i++) {
+        rank ranks[RANKS];
+        const rank like = {.text = solid_text, .path = "a.ply", .of = each[i]};
+        int failures = 0;
+        for (int n = 0;; n += 1 + n / 16) {
+            mesh_by_all(ranks, &like, 0, NEVER, n);
+            if (ranks[0].status == CSGM_OK)
+                break;
+            failures++;
+            assert_int_equal(ranks[0].status, CSGM_ERR_IO);
+            assert_int_equal(ranks[0].errors, 1);
+        }
+        assert_true(failures > 3);
+        unlink("a.ply");
     }
-    assert_true(failures > 10);
-    unlink("a.ply");
 }
 
 /* ---- jobs that go on -------------------------------------------------------------------------- */
@@ -390,16 +450,6 @@ static void empty_folder(void)
     static const char *const names[] = {"kept/mesh", "kept/rank-0", "kept/rank-1", "kept/rank-2"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         unlink(names[i]);
-}
-
-static void assert_same_files(const char *one, const char *other)
-{
-    size_t lengths[2];
-    char *a = read_all(one, &lengths[0]), *b = read_all(other, &lengths[1]);
-    assert_int_equal(lengths[0], lengths[1]);
-    assert_memory_equal(a, b, lengths[0]);
-    free(a);
-    free(b);
 }
 
 static uint64_t resumed_of(const rank ranks[RANKS])
@@ -426,7 +476,7 @@ static void test_stopped_and_resumed(void **state)
         int stops = 0, names = 0;
         snprintf(one, sizeof one, "one.%s", cases[i].extension);
         snprintf(many, sizeof many, "many.%s", cases[i].extension);
-        alone(cases[i].text, one);
+        alone(cases[i].text, one, EQUAL_CELLS);
         const rank like = {.text = cases[i].text, .path = many, .folder = "kept"};
         for (;; stops++) {
             empty_folder();
@@ -462,7 +512,7 @@ static void test_not_resumed(void **state)
     const rank other = {.text = uneven_text, .path = "many.ply", .folder = "kept"};
     (void)state;
     assert_int_equal(mkdir("kept", 0777), 0);
-    alone(solid_text, "one.ply");
+    alone(solid_text, "one.ply", EQUAL_CELLS);
     mesh_by_all(ranks, &other, 0, NEVER, 14);
     assert_int_equal(ranks[0].status, CSGM_ERR_IO);
     mesh_by_all(ranks, &like, 0, NEVER, -1);
@@ -487,12 +537,15 @@ static void test_not_resumed(void **state)
 
 static void test_cannot_be_kept(void **state)
 {
-    static const char *const paths[] = {"a.obj", "a.ply"};
+    static const char *const paths[] = {"a.obj", "a.ply", "a.ply"};
     (void)state;
     assert_int_equal(mkdir("kept", 0777), 0);
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         rank ranks[RANKS];
-        const rank like = {.text = i ? parts_text : solid_text, .path = paths[i], .folder = "kept"};
+        const rank like = {.text = i == 1 ? parts_text : solid_text,
+                           .path = paths[i],
+                           .folder = "kept",
+                           .of = i == 2 ? CELLS_THAT_FOLLOW : EQUAL_CELLS};
         mesh_by_all(ranks, &like, 0, NEVER, -1);
         assert_int_equal(ranks[0].status, CSGM_ERR_UNSUPPORTED);
         assert_int_equal(ranks[0].errors, 1);
@@ -514,7 +567,7 @@ static void test_failing_allocations_resumed(void **state)
     int failures = 0;
     (void)state;
     assert_int_equal(mkdir("kept", 0777), 0);
-    alone(solid_text, "one.glb");
+    alone(solid_text, "one.glb", EQUAL_CELLS);
     for (long left = 0;; left += 1 + left / 12) {
         mesh_by_all(ranks, &like, 1, left, -1);
         if (ranks[0].status == CSGM_OK)
@@ -548,7 +601,8 @@ int main(void)
         cmocka_unit_test(test_broken_contracts),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_mesh_on_the_first),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_same_bytes_reshaped),
+        cmocka_unit_test(test_other_options),
         cmocka_unit_test(test_failing_allocations),
         cmocka_unit_test(test_failing_exchanges),
         cmocka_unit_test(test_stopped_and_resumed),

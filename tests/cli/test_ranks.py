@@ -108,6 +108,40 @@ class Ranks(cli.CliTest):
         self.compare("parts", "parts.txt", "ply", (2,), "-r", 40)
         self.compare("colours", "blend.txt", "glb", (4,), "-r", 40)
 
+    def test_cells_that_follow(self):
+        """Without -r and -s, with what changes triangles after they are made, in parts and colours, for 1 to 7 ranks."""
+        self.write("parts.txt", PARTS)
+        self.write("blend.txt", cli.BLEND)
+        cross = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        mug = os.path.join(cli.SCENES, "parts", "mug.txt")
+        draft = ("--quality", "draft")
+        for name, scene, extension, counts, *options in (("sharp", cross, "ply", RANKS), ("within", cross, "ply", (7,), "-e", 0.1),
+                                                         ("smooth", cross, "stl", (2,), "--features", "smooth", *draft),
+                                                         ("budget", cross, "glb", (4,), "--triangles", 1000),
+                                                         ("curved", mug, "ply", (4,), *draft),
+                                                         ("improved", cross, "obj", (2,), *draft, "--improve"),
+                                                         ("equal", cross, "ply", (3,), "-r", 40, "--simplify", 0.02),
+                                                         ("threads", cross, "ply", (3,), "-j", 2, *draft),
+                                                         ("parts", "parts.txt", "glb", (4,), *draft),
+                                                         ("colours", "blend.txt", "ply", (3,), *draft)):
+            self.compare(name, scene, extension, counts, *map(str, options))
+
+    def test_warned_once(self):
+        """What is said of a mesh that all ranks have, the first says."""
+        self.write("half.txt", "sphere(r = 1);\n")
+        result = self.make(3, "half.txt", "-o", "a.ply", "--bounds", "-2,-2,-2,2,2,0.5", "--quality", "draft")
+        self.assertEqual(result.stderr.count("warning W0402"), 1, result.stderr)
+
+    def test_limits_of_replicated_work(self):
+        """A rank that has no more time or memory ends the job: one message, no file."""
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        for options, words in ((("--timeout", 0.2), "longer than the limit of 0.2 s"), (("--max-memory", "3M"), "memory")):
+            with self.subTest(words):
+                weak, strong = [scene, "-o", "a.ply", *options], [scene, "-o", "a.ply"]
+                result = self.run_job((3, PROGRAM, *weak))
+                self.assert_one_message(result, words)
+                self.assert_files()
+
     def test_fewer_cubes_than_ranks(self):
         self.write("ball.txt", cli.BALL)
         self.compare("ball", "ball.txt", "ply", (7,), "-r", 6)
@@ -136,6 +170,17 @@ class Ranks(cli.CliTest):
         for rank in stats["ranks"][:3]:
             self.assertGreater(rank["halo_cubes"], 0)
 
+    def test_stats_of_cells_that_follow(self):
+        """Each rank has its share of the work, of a mesh that all have."""
+        scene = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        stats = json.loads(self.make(3, scene, "-o", "a.ply", "--stats").stdout)
+        tasks = [rank["tasks"] for rank in stats["ranks"]]
+        self.assertLess(max(tasks), 1.2 * sum(tasks) / 3, tasks)
+        made = [rank["triangles"] for rank in stats["ranks"]]
+        self.assertLess(max(made), 1.2 * sum(made) / 3, made)
+        self.assertGreater(sum(made), stats["mesh"]["triangles"]) # before they are thinned out
+        self.assertGreater(min(rank["received_bytes"] for rank in stats["ranks"]), 1000)
+
     # ---- what it says of itself
 
     def test_page(self):
@@ -147,8 +192,8 @@ class Ranks(cli.CliTest):
         self.assertLess(written, mesh)
         self.assertIn("--max-memory", written)
         self.write("ball.txt", cli.BALL)
-        self.assertEqual(mesh - written, {"--cells", "--depfile", "--improve", "--lod", "--quality", "--root", "--sandbox", "--simplify", "--smooth",
-                                          "--summary", "--tolerance", "--trace", "--triangles", "--watch"} & mesh)
+        self.assertEqual(mesh - written, {"--cells", "--depfile", "--lod", "--root", "--sandbox", "--smooth", "--summary", "--trace",
+                                          "--watch"} & mesh)
         result = self.run_job((1, PROGRAM, "ball.txt", "-r", 20, "-o", "a.ply", "--lod", 3))
         self.assert_one_message(result, "csgmesh-mpi has no --lod")
         if shutil.which("man"):
@@ -162,8 +207,8 @@ class Ranks(cli.CliTest):
 
     def test_refused(self):
         self.write("ball.txt", cli.BALL)
-        for options, words in (((), "give -r or -s"), (("-r", 20, "-e", 0.1), "changes none of the triangles"),
-                               (("-r", 20, "-o", "b.ply"), "one file")):
+        for options, words in ((("-r", 20, "-o", "b.ply"), "one file"), (("--lod", 3), "csgmesh-mpi has no --lod"),
+                               (("--resume", ), "cannot be kept")):
             with self.subTest(words):
                 result = self.run_job((2, PROGRAM, "ball.txt", "-o", "a.ply", *options))
                 self.assert_one_message(result, words)
@@ -226,6 +271,19 @@ class Ranks(cli.CliTest):
                 self.assertNotEqual(job.returncode, 0)
                 self.assertNotIn(b"csgmesh: ", said)
                 self.assert_files()
+
+    def test_killed_rank_of_cells_that_follow(self):
+        scene = os.path.join(STRESS, "s5-gyroid.txt")
+        line = self.job((3, PROGRAM, scene, "--quality", "fine", "-o", "a.ply"))
+        with subprocess.Popen(line, cwd=self.folder, env=self.environment, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL) as job:
+            deadline = time.monotonic() + 60
+            while self.seconds_of(1) < 1 and job.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            os.kill(self.process_of(1), signal.SIGKILL)
+            _, said = job.communicate(timeout=60)
+        self.assertNotEqual(job.returncode, 0)
+        self.assertNotIn(b"csgmesh: ", said)
+        self.assert_files()
 
     # ---- going on
 
@@ -320,6 +378,14 @@ class Ranks(cli.CliTest):
         self.assert_one_message(result, "two ranks or more")
         self.make(2, "a.txt", *tail) # a folder without a word in it is begun anew
         self.assert_files("a.txt", "b.txt", "a.ply", "c.ply.resume")
+
+    def seconds_of(self, rank):
+        """Its processor time in user mode; 0 before it is there."""
+        try:
+            with open(f"/proc/{self.process_of(rank)}/stat", encoding="ascii") as file:
+                return int(file.read().rpartition(")")[2].split()[11]) / os.sysconf("SC_CLK_TCK")
+        except (self.failureException, OSError):
+            return 0
 
     def process_of(self, rank):
         """The process that is this rank of the job in the test's folder."""

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/pool.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
 #include "grid/octree/octree.h"
@@ -31,6 +30,7 @@ typedef struct csg_bricks_worker {
     brick_samples *samples;
     float *scratch;
     csg_bricks_stats stats;
+    bool judges; /* the item at hand, which is not another rank's */
 } worker;
 
 typedef struct segment {
@@ -44,6 +44,7 @@ typedef struct round {
     size_t queue_count;
     segment *segments; /* one per item */
     size_t done_before;
+    bool shares; /* other ranks judge, too */
     atomic_bool out_of_memory;
 } round_of_division;
 
@@ -243,7 +244,7 @@ static bool make_child(csg_bricks *b, uint32_t worker_index, const csg_brick *pa
         return false;
     child.nodes = tape.nodes;
     child.node_count = tape.count;
-    if (child.level >= b->options.coarse) {
+    if (child.level >= b->options.coarse && self->judges) {
         sample(b, self, &child);
         if (!b->options.judge(b->options.judge_user, worker_index, b, &child, self->samples->f))
             return false;
@@ -295,6 +296,7 @@ static bool divide_item(void *user, uint32_t worker_index, size_t item)
         return false;
     segment *s = &r->segments[item];
     *s = (segment){worker_index, self->count, 0};
+    self->judges = !r->shares || csg_ranks_have(b->context, item);
     size_t end = (item + 1) * BRICKS_PER_ITEM;
     for (size_t i = item * BRICKS_PER_ITEM; i < end && i < r->queue_count; i++)
         if (!divide(b, worker_index, &b->items[r->queue[i]])) {
@@ -316,6 +318,73 @@ static void report(void *user, size_t done, size_t count)
         b->reported = fraction;
         b->options.progress(b->options.user, fraction);
     }
+}
+
+/* What ranks tell each other of a brick that is judged; tapes each has shortened for itself, since
+ * they may hold on to shapes. */
+typedef struct brick_record {
+    uint64_t pierced;
+    uint8_t wanted, searched, crossed, flat, several;
+    uint8_t inside[N][N];
+} brick_record;
+
+static bool tell(const csg_bricks *b, const csg_brick *brick, csg_records *records)
+{
+    brick_record own = {.pierced = brick->pierced,
+                        .wanted = brick->wanted,
+                        .searched = brick->searched,
+                        .crossed = brick->crossed,
+                        .flat = brick->flat,
+                        .several = brick->several};
+    memcpy(own.inside, brick->inside, sizeof own.inside);
+    return csg_records_add(&b->context->memory, records, &own, sizeof own) &&
+           (!b->options.tell || b->options.tell(b->options.judge_user, brick, records));
+}
+
+static bool hear(const csg_bricks *b, csg_brick *brick, csg_record_reader *reader, size_t item)
+{
+    brick_record own;
+    csg_record_read(reader, item, &own, sizeof own);
+    brick->pierced = own.pierced;
+    brick->wanted = own.wanted;
+    brick->searched = own.searched;
+    brick->crossed = own.crossed;
+    brick->flat = own.flat;
+    brick->several = own.several;
+    memcpy(brick->inside, own.inside, sizeof own.inside);
+    return !b->options.hear || b->options.hear(b->options.judge_user, brick, reader, item);
+}
+
+/* Tells of the bricks of an item, or hears. False: out of memory. */
+static bool pass_on(const round_of_division *r, size_t item, csg_records *told,
+                    csg_record_reader *heard)
+{
+    const csg_bricks *b = r->bricks;
+    const segment *s = &r->segments[item];
+    bool done = true;
+    for (size_t i = s->first; i < s->first + s->count && done; i++) {
+        csg_brick *brick = &b->workers[s->worker].made[i];
+        if (brick->level >= b->options.coarse)
+            done = told ? tell(b, brick, told) : hear(b, brick, heard, item);
+    }
+    return done;
+}
+
+/* What each rank has judged, to all. */
+static csgm_status exchange_bricks(const round_of_division *r, size_t items, csgm_status own)
+{
+    csgm_context *context = r->bricks->context;
+    csg_records records = {0};
+    csg_record_reader reader;
+    for (size_t i = 0; i < items && own == CSGM_OK; i++)
+        if (csg_ranks_have(context, i) && !pass_on(r, i, &records, NULL))
+            own = csg_context_no_memory(context);
+    csgm_status status = csg_ranks_exchange(context, own, items, &records, &reader);
+    for (size_t i = 0; i < items && status == CSGM_OK; i++)
+        if (!csg_ranks_have(context, i) && !pass_on(r, i, NULL, &reader))
+            status = csg_context_no_memory(context);
+    csg_record_reader_end(&context->memory, &reader);
+    return status;
 }
 
 /* The children into the array and the index, in the order of the queue. */
@@ -355,12 +424,18 @@ static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count
     r.segments = csg_memory_alloc(&b->context->memory, (items + 1) * sizeof(segment));
     if (!r.segments)
         return csg_context_no_memory(b->context);
-    bool done = csg_pool_run(b->context->pool, items, divide_item, report, &r);
-    bool joined = done && join_children(&r, items);
+    r.shares = csg_ranks_share(b->context, items, CSG_ITEMS_SMALL);
+    csgm_status status = CSGM_OK;
+    if (!csg_pool_run(b->context->pool, items, divide_item, report, &r))
+        status = atomic_load(&r.out_of_memory) ? csg_context_no_memory(b->context)
+                 : b->options.why              ? b->options.why(b->options.user)
+                                               : CSGM_CANCELLED;
+    if (r.shares)
+        status = exchange_bricks(&r, items, status);
+    if (status == CSGM_OK && !join_children(&r, items))
+        status = csg_context_no_memory(b->context);
     csg_memory_release(&b->context->memory, r.segments, (items + 1) * sizeof(segment));
-    if (atomic_load(&r.out_of_memory) || (done && !joined))
-        return csg_context_no_memory(b->context);
-    return joined ? CSGM_OK : CSGM_CANCELLED;
+    return status;
 }
 
 /* ---- balance -----------------------------------------------------------------------------------

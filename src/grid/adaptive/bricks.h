@@ -12,6 +12,7 @@
 #ifndef CSG_GRID_ADAPTIVE_BRICKS_H
 #define CSG_GRID_ADAPTIVE_BRICKS_H
 
+#include "base/rank_loop.h"
 #include "base/table.h"
 #include "field/prune/prune.h"
 #include "grid/octree/lattice.h"
@@ -53,14 +54,22 @@ typedef struct csg_bricks csg_bricks;
 typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
                              csg_brick *brick, const float *f);
 
+/* What the judge has found of a brick that others have to know (base/rank_loop.h): beyond the
+ * brick's own members, `judged`. False: out of memory. The calling thread. */
+typedef bool csg_brick_tell(void *user, const csg_brick *brick, csg_records *records);
+typedef bool csg_brick_hear(void *user, csg_brick *brick, csg_record_reader *reader, size_t item);
+
 typedef struct csg_bricks_options {
     bool prune;      /* false: values come from the whole tape; what is divided stays the same */
     uint32_t coarse; /* the level of the largest leaves */
     size_t most;     /* bricks: beyond them refinement ends */
     csg_brick_judge *judge;
+    csg_brick_tell *tell; /* NULL where the judge keeps nothing */
+    csg_brick_hear *hear;
     void *judge_user;
     void (*progress)(void *user, double fraction); /* calling thread; may be NULL */
     bool (*cancelled)(void *user);                 /* any worker; may be NULL */
+    csgm_status (*why)(void *user); /* it was cancelled, reported; NULL: CSGM_CANCELLED */
     void *user;
 } csg_bricks_options;
 
@@ -94,9 +103,8 @@ csgm_status csg_bricks_create(csgm_context *context, const csgm_field *field,
 void csg_bricks_destroy(csg_bricks *bricks);
 
 /* Divides what the judge wants, then what the balance wants, until nobody wants anything. Cells
- * that are `wanted` already are divided, too. CSGM_OK; CSGM_CANCELLED, or
- * CSGM_ERR_LIMIT where there are too many, neither of them reported; or CSGM_ERR_MEMORY
- * (reported). */
+ * that are `wanted` already are divided, too. CSGM_OK; CSGM_ERR_LIMIT where there are too many, not
+ * reported; why it was cancelled; CSGM_ERR_MEMORY (reported); or as csg_ranks_exchange has it. */
 csgm_status csg_bricks_refine(csg_bricks *bricks);
 
 /* The brick at a place of a level, CSG_BRICK_NONE where there is none. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/mesh_codes.h"
-#include "base/pool.h"
+#include "base/rank_loop.h"
 
 enum { BRICKS_PER_ITEM = 16 };
 
@@ -99,6 +99,7 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
     if (csg_mesh_should_stop(w->x->watch))
         return false;
     self->first = self->count;
+    self->creases = self->smooth = 0;
     w->segments[item] = (csg_cell_segment){
         .worker = worker_index, .first = self->count, .first_corner = self->corner_count};
     size_t end = (item + 1) * BRICKS_PER_ITEM;
@@ -111,6 +112,8 @@ static bool visit_item(void *user, uint32_t worker_index, size_t item)
     }
     w->segments[item].count = self->count - w->segments[item].first;
     w->segments[item].corner_count = self->corner_count - w->segments[item].first_corner;
+    w->segments[item].creases = self->creases;
+    w->segments[item].smooth = self->smooth;
     return true;
 }
 
@@ -119,6 +122,103 @@ static void report(void *user, size_t done, size_t count)
     csg_cell_loop *w = user;
     csg_mesh_report_progress(w->x->watch, w->before + w->amount * ((double)done / (double)count));
 }
+
+/* ---- what other ranks have made ----------------------------------------------------------------
+ */
+
+/* The leaves of an item. */
+static size_t end_of_item(const csg_cell_loop *w, size_t item)
+{
+    size_t end = (item + 1) * BRICKS_PER_ITEM;
+    return end < w->leaf_count ? end : w->leaf_count;
+}
+
+/* An item's record: its segment, vertices, corners, and of each leaf which cells are wanted
+ * divided. False: out of memory. */
+static bool pack_item(const csg_cell_loop *w, size_t item, csg_records *records)
+{
+    csg_memory *memory = &w->x->context->memory;
+    const csg_cell_segment *s = &w->segments[item];
+    const csg_cell_worker *from = &w->workers[s->worker];
+    bool done =
+        csg_records_add(memory, records, s, sizeof *s) &&
+        csg_records_add(memory, records, s->count ? from->vertices + s->first : NULL,
+                        s->count * sizeof *from->vertices) &&
+        csg_records_add(memory, records, s->corner_count ? from->corners + s->first_corner : NULL,
+                        s->corner_count * sizeof *from->corners);
+    for (size_t i = item * BRICKS_PER_ITEM; done && i < end_of_item(w, item); i++)
+        done = csg_records_add(memory, records, &w->x->bricks->items[w->leaves[i]].wanted, 1);
+    return done;
+}
+
+/* Puts another rank's item behind what the first worker has made. False: out of memory. */
+static bool unpack_item(csg_cell_loop *w, size_t item, csg_record_reader *records)
+{
+    csg_memory *memory = &w->x->context->memory;
+    csg_cell_worker *to = &w->workers[0];
+    csg_cell_segment *s = &w->segments[item];
+    csg_record_read(records, item, s, sizeof *s);
+    s->worker = 0;
+    s->first = to->count;
+    s->first_corner = to->corner_count;
+    if (!csg_memory_reserve(memory, (void **)&to->vertices, &to->capacity, to->count + s->count,
+                            sizeof *to->vertices) ||
+        !csg_memory_reserve(memory, (void **)&to->corners, &to->corner_capacity,
+                            to->corner_count + s->corner_count, sizeof *to->corners))
+        return false;
+    csg_record_read(records, item, to->vertices + to->count, s->count * sizeof *to->vertices);
+    csg_record_read(records, item, to->corners + to->corner_count,
+                    s->corner_count * sizeof *to->corners);
+    to->count += s->count;
+    to->corner_count += s->corner_count;
+    for (size_t i = item * BRICKS_PER_ITEM; i < end_of_item(w, item); i++) {
+        uint8_t wanted;
+        csg_record_read(records, item, &wanted, sizeof wanted);
+        w->x->bricks->items[w->leaves[i]].wanted |= wanted;
+        if (wanted)
+            atomic_store(&w->any, true);
+    }
+    return true;
+}
+
+static void note_work(const csg_cell_loop *w)
+{
+    csgm_rank_work *work = &w->x->context->ranks->work;
+    for (uint32_t i = 0; i < w->worker_count; i++) {
+        work->vertices += w->workers[i].count;
+        work->triangles += w->workers[i].corner_count / 3;
+    }
+}
+
+/* What each rank's items have made, to all. */
+static csgm_status exchange_items(csg_cell_loop *w, csgm_status own)
+{
+    csgm_context *context = w->x->context;
+    const size_t count = item_count(w);
+    csg_records records = {0};
+    csg_record_reader reader;
+    size_t bytes = count * sizeof *w->segments + w->leaf_count; /* of this rank, and more */
+    for (uint32_t i = 0; i < w->worker_count; i++)
+        bytes += w->workers[i].count * sizeof *w->vertices +
+                 w->workers[i].corner_count * sizeof *w->corners;
+    if (own == CSGM_OK && !csg_records_reserve(&context->memory, &records, bytes))
+        own = csg_context_no_memory(context);
+    for (size_t i = 0; i < count && own == CSGM_OK; i++)
+        if (csg_ranks_have(context, i) && !pack_item(w, i, &records))
+            own = csg_context_no_memory(context);
+    note_work(w);
+    csgm_status status = csg_ranks_exchange(context, own, count, &records, &reader);
+    for (uint32_t i = 0; i < w->worker_count && status == CSGM_OK; i++)
+        w->workers[i].count = w->workers[i].corner_count = 0;
+    for (size_t i = 0; i < count && status == CSGM_OK; i++)
+        if (!unpack_item(w, i, &reader))
+            status = csg_context_no_memory(context);
+    csg_record_reader_end(&context->memory, &reader);
+    return status;
+}
+
+/* ---- what is joined ----------------------------------------------------------------------------
+ */
 
 /* Vertices of all items behind those that are there, and corners, in the order of the leaves. */
 static bool join_items(csg_cell_loop *w)
@@ -150,6 +250,8 @@ static bool join_items(csg_cell_loop *w)
             memcpy(w->vertices + w->count, from->vertices + s->first,
                    s->count * sizeof *w->vertices);
         w->count += s->count;
+        w->creases += s->creases;
+        w->smooth += s->smooth;
     }
     for (uint32_t i = 0; i < w->worker_count; i++)
         w->workers[i].count = w->workers[i].corner_count = 0;
@@ -182,10 +284,14 @@ csgm_status csg_cell_loop_run(csg_cell_loop *w, csg_visit_brick *visit, double b
     w->amount = amount;
     if (!reserve_segments(w))
         return csg_context_no_memory(w->x->context);
-    bool done = csg_pool_run(w->x->context->pool, item_count(w), visit_item, report, w);
-    if (!done)
-        return atomic_load(&w->broken) ? csg_mesh_report_open(w->x->watch)
-                                       : csg_mesh_why_stopped(w->x->watch);
+    csgm_status status = CSGM_OK;
+    if (!csg_ranks_run(w->x->context, item_count(w), CSG_ITEMS_SMALL, visit_item, report, w))
+        status = atomic_load(&w->broken) ? csg_mesh_report_open(w->x->watch)
+                                         : csg_mesh_why_stopped(w->x->watch);
+    if (csg_ranks_share(w->x->context, item_count(w), CSG_ITEMS_SMALL))
+        status = exchange_items(w, status);
+    if (status != CSGM_OK)
+        return status;
     w->has_shells = w->shells != NULL;
     if (!join_items(w))
         return csg_context_no_memory(w->x->context);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Parallel loops over leaves: what each makes is joined in the order of the leaves, whatever the
- * number of threads; vertices of edges and faces are found again by their places.
+ * number of threads, and of ranks that share them; vertices of edges and faces are found again by
+ * their places.
  */
 #ifndef CSG_MESH_ADAPTIVE_CELL_LOOP_H
 #define CSG_MESH_ADAPTIVE_CELL_LOOP_H
@@ -22,14 +23,15 @@ typedef struct csg_placed_vertex {
 typedef struct csg_cell_segment {
     uint32_t worker;
     size_t first, count, first_corner, corner_count;
+    uint64_t creases, smooth;
 } csg_cell_segment;
 
 typedef struct csg_cell_worker {
     csg_placed_vertex *vertices;
     uint32_t *corners;
     size_t count, capacity, corner_count, corner_capacity;
-    size_t first; /* vertex of the item at hand */
-    uint64_t creases, smooth;
+    size_t first;             /* vertex of the item at hand */
+    uint64_t creases, smooth; /* of that item */
 } csg_cell_worker;
 
 typedef struct csg_cell_loop {
@@ -49,6 +51,7 @@ typedef struct csg_cell_loop {
     csg_table index;   /* of those of edges and faces, by place */
     uint32_t *corners; /* joined */
     size_t corner_count;
+    uint64_t creases, smooth;
     bool (*visit)(struct csg_cell_loop *loop, uint32_t worker, const csg_shell *shell);
     double before, amount; /* of the stage's progress */
     atomic_bool any;       /* a cell is wanted divided */

@@ -169,10 +169,8 @@ csgm_status csg_extract(csg_extraction *x)
         status = csg_cells_find_vertices(&w, 0, 0.5);
     if (status == CSGM_OK)
         status = csg_cell_loop_run(&w, visit_cells, 0.5, 0.5);
-    for (uint32_t i = 0; status == CSGM_OK && i < w.worker_count; i++) {
-        x->creases += w.workers[i].creases;
-        x->smooth += w.workers[i].smooth;
-    }
+    x->creases += w.creases;
+    x->smooth += w.smooth;
     if (status == CSGM_OK)
         status = fill_mesh(&w);
     csg_cell_loop_end(&w);

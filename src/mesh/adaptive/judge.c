@@ -658,3 +658,18 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     brick->wanted = is_finest ? 0 : (uint8_t)wanted;
     return !w.out_of_memory && keep(&w, brick->crossed & (uint8_t)~brick->wanted);
 }
+
+/* ---- other ranks -------------------------------------------------------------------------------
+ */
+
+bool csg_judge_tell(void *user, const csg_brick *brick, csg_records *records)
+{
+    const csg_judge *judge = user;
+    return csg_judged_pack(judge->memory, brick->judged, records);
+}
+
+bool csg_judge_hear(void *user, csg_brick *brick, csg_record_reader *reader, size_t item)
+{
+    const csg_judge *judge = user;
+    return csg_judged_unpack(&judge->rooms[0].kept, reader, item, &brick->judged);
+}

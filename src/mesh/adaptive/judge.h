@@ -56,6 +56,10 @@ typedef struct csg_judge {
 bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
                      const float *f);
 
+/* A csg_brick_tell and a csg_brick_hear; user: the same. */
+bool csg_judge_tell(void *user, const csg_brick *brick, csg_records *records);
+bool csg_judge_hear(void *user, csg_brick *brick, csg_record_reader *reader, size_t item);
+
 /* ---- shared with the making of triangles ---------------------------------------------------- */
 
 /* Whether a cell is so small that its sheets may fail to meet. */

@@ -49,6 +49,63 @@ const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged)
     return done ? own : NULL;
 }
 
+/* What a record has of it, before the arrays. */
+typedef struct judged_head {
+    bool is_there, has_pierced;
+    uint8_t root_count, crease_count, apex_count;
+} judged_head;
+
+bool csg_judged_pack(csg_memory *memory, const csg_judged *j, csg_records *records)
+{
+    judged_head head = {.is_there = j != NULL};
+    if (j)
+        head =
+            (judged_head){true, j->pierced != NULL, j->root_count, j->crease_count, j->apex_count};
+    bool done = csg_records_add(memory, records, &head, sizeof head);
+    if (!j)
+        return done;
+    return done && csg_records_add(memory, records, j->roots, j->root_count * sizeof *j->roots) &&
+           csg_records_add(memory, records, j->creases, j->crease_count * sizeof *j->creases) &&
+           csg_records_add(memory, records, j->apexes, j->apex_count * sizeof *j->apexes) &&
+           csg_records_add(memory, records, j->pierced, head.has_pierced ? sizeof *j->pierced : 0);
+}
+
+/* False: out of memory. */
+static bool read_array(csg_arena *arena, csg_record_reader *reader, size_t item, size_t bytes,
+                       const void **out)
+{
+    void *own = bytes ? csg_arena_alloc(arena, bytes) : NULL;
+    if (own)
+        csg_record_read(reader, item, own, bytes);
+    *out = own;
+    return own || !bytes;
+}
+
+bool csg_judged_unpack(csg_arena *arena, csg_record_reader *reader, size_t item,
+                       const csg_judged **out)
+{
+    judged_head head;
+    csg_record_read(reader, item, &head, sizeof head);
+    *out = NULL;
+    if (!head.is_there)
+        return true;
+    csg_judged *own = csg_arena_alloc(arena, sizeof *own);
+    if (!own)
+        return false;
+    *own = (csg_judged){.root_count = head.root_count,
+                        .crease_count = head.crease_count,
+                        .apex_count = head.apex_count};
+    *out = own;
+    return read_array(arena, reader, item, head.root_count * sizeof *own->roots,
+                      (const void **)&own->roots) &&
+           read_array(arena, reader, item, head.crease_count * sizeof *own->creases,
+                      (const void **)&own->creases) &&
+           read_array(arena, reader, item, head.apex_count * sizeof *own->apexes,
+                      (const void **)&own->apexes) &&
+           read_array(arena, reader, item, head.has_pierced ? sizeof *own->pierced : 0,
+                      (const void **)&own->pierced);
+}
+
 const csg_pierced *csg_judged_pierced(const csg_judged *judged)
 {
     return judged && judged->pierced ? judged->pierced : &NOTHING_PIERCED;

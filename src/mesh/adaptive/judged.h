@@ -62,6 +62,11 @@ bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_c
 /* A copy in an arena. NULL: out of memory. */
 const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged);
 
+/* The same for other ranks (base/rank_loop.h). False: out of memory. */
+bool csg_judged_pack(csg_memory *memory, const csg_judged *judged, csg_records *records);
+bool csg_judged_unpack(csg_arena *arena, csg_record_reader *reader, size_t item,
+                       const csg_judged **out);
+
 /* Of a brick whose judge kept nothing, because no leaf is left of it, there is nothing. */
 const csg_pierced *csg_judged_pierced(const csg_judged *judged);
 /* NULL: there is none in that face, in that part of the side. */

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/pool.h"
+#include "base/rank_loop.h"
 #include "base/trace.h"
 #include "mesh/remesh/triangle.h"
 
@@ -23,15 +23,35 @@ static int compare_places(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* The rooms' places, sorted. NULL: out of memory. */
-static place *gather(const csg_extraction *x, uint32_t rooms, size_t count)
+/* The rooms' places behind each other, forgotten there; with ranks those of all, some of them
+ * several times. CSGM_OK or why it ends (reported). */
+static csgm_status gather(const csg_extraction *x, csg_records *out)
 {
-    place *places = csg_memory_alloc(&x->context->memory, count * sizeof *places);
-    size_t n = 0;
-    for (uint32_t i = 0; places && i < rooms; i++) {
-        const csg_judge_room *room = &x->judge->rooms[i];
-        for (size_t k = 0; k < room->unsure_count; k++)
-            places[n++] = (place){room->unsure[k], false};
+    csgm_context *context = x->context;
+    csgm_status status = CSGM_OK;
+    for (uint32_t i = 0; i < csg_pool_threads(context->pool) && status == CSGM_OK; i++) {
+        csg_judge_room *room = &x->judge->rooms[i];
+        if (!csg_records_add(&context->memory, out, room->unsure,
+                             room->unsure_count * sizeof *room->unsure))
+            status = csg_context_no_memory(context);
+        room->unsure_count = 0;
+    }
+    if (!context->ranks)
+        return status;
+    csg_rank_pieces all;
+    status = csg_ranks_gather(context, status, CSGM_ALL_RANKS, out->bytes, out->count, &all);
+    csg_memory_release(&context->memory, out->bytes, out->capacity);
+    *out = (csg_records){all.bytes, (size_t)all.total, (size_t)all.total};
+    return status;
+}
+
+/* They, sorted. NULL: out of memory. */
+static place *sort(csg_memory *memory, const csg_records *gathered, size_t count)
+{
+    place *places = csg_memory_alloc(memory, count * sizeof *places);
+    for (size_t i = 0; places && i < count; i++) {
+        places[i] = (place){.is_near = false};
+        memcpy(&places[i].at, gathered->bytes + i * sizeof(csg_vec3), sizeof(csg_vec3));
     }
     if (places)
         qsort(places, count, sizeof *places, compare_places);
@@ -96,22 +116,21 @@ static bool want_divided(csg_bricks *b, csg_vec3 at)
 csgm_status csg_unsure_check(csg_extraction *x, bool *any)
 {
     CSG_ZONE(x->context, "unsure places");
-    uint32_t rooms = csg_pool_threads(x->context->pool);
-    size_t count = 0;
+    csg_memory *memory = &x->context->memory;
+    csg_records gathered = {0};
     *any = false;
-    for (uint32_t i = 0; i < rooms; i++)
-        count += x->judge->rooms[i].unsure_count;
-    if (!count)
-        return CSGM_OK;
-    place *places = gather(x, rooms, count);
+    csgm_status status = gather(x, &gathered);
+    size_t count = gathered.count / sizeof(csg_vec3);
+    place *places = status == CSGM_OK && count ? sort(memory, &gathered, count) : NULL;
+    csg_memory_release(memory, gathered.bytes, gathered.capacity);
+    if (status != CSGM_OK || !count)
+        return status;
     if (!places)
         return csg_context_no_memory(x->context);
     mark_near_mesh(x, places, count);
     for (size_t i = 0; i < count; i++)
         if (!places[i].is_near && want_divided(x->bricks, places[i].at))
             *any = true;
-    csg_memory_release(&x->context->memory, places, count * sizeof *places);
-    for (uint32_t i = 0; i < rooms; i++)
-        x->judge->rooms[i].unsure_count = 0;
+    csg_memory_release(memory, places, count * sizeof *places);
     return CSGM_OK;
 }

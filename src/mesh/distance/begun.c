@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "base/pool.h"
+#include "base/rank_loop.h"
 #include "shape/polyhedra/within.h"
 
 enum { TRIANGLES = 64 /* of an item */ };
@@ -102,6 +102,13 @@ static void check_triangle(const check *c, csg_within_search *search, uint32_t t
         out->place = csg_triangle_frame_leave(frame, search->beyond);
 }
 
+/* Triangles of an item. */
+static uint32_t count_of_item(const check *c, size_t index)
+{
+    uint32_t left = c->remesh->corners.triangle_count - (uint32_t)index * TRIANGLES;
+    return left < TRIANGLES ? left : TRIANGLES;
+}
+
 static bool check_item(void *user, uint32_t worker, size_t index)
 {
     (void)worker;
@@ -109,8 +116,7 @@ static bool check_item(void *user, uint32_t worker, size_t index)
     const csg_corners *m = &c->remesh->corners;
     csg_begun_proof *out = &c->items[index];
     csg_within_search search = {.tree = &c->begun->tree, .limit = c->limit};
-    uint32_t first = (uint32_t)index * TRIANGLES;
-    uint32_t end = first + TRIANGLES < m->triangle_count ? first + TRIANGLES : m->triangle_count;
+    uint32_t first = (uint32_t)index * TRIANGLES, end = first + count_of_item(c, index);
     *out = (csg_begun_proof){0};
     for (uint32_t t = first; t < end; t++) {
         bool is_asked = csg_corners_is_live(m, t) && c->pending[t];
@@ -128,6 +134,27 @@ static void report_items(void *user, size_t done, size_t count)
     csg_mesh_report_progress(c->remesh->watch, (double)done / (double)count);
 }
 
+/* What each rank has found, to all: of an item its proof, then which triangles stayed open. */
+static csgm_status exchange_items(check *c, size_t count, csgm_status own)
+{
+    csgm_context *context = c->remesh->context;
+    csg_records records = {0};
+    csg_record_reader reader;
+    for (size_t i = 0; i < count && own == CSGM_OK; i++)
+        if (csg_ranks_have(context, i) &&
+            (!csg_records_add(&context->memory, &records, &c->items[i], sizeof *c->items) ||
+             !csg_records_add(&context->memory, &records, c->pending + i * TRIANGLES,
+                              count_of_item(c, i))))
+            own = csg_context_no_memory(context);
+    csgm_status status = csg_ranks_exchange(context, own, count, &records, &reader);
+    for (size_t i = 0; i < count && status == CSGM_OK; i++) {
+        csg_record_read(&reader, i, &c->items[i], sizeof *c->items);
+        csg_record_read(&reader, i, c->pending + i * TRIANGLES, count_of_item(c, i));
+    }
+    csg_record_reader_end(&context->memory, &reader);
+    return status;
+}
+
 csgm_status csg_begun_check(const csg_begun *begun, const csg_remesh *r, double error,
                             uint8_t *pending, csg_begun_proof *out)
 {
@@ -138,13 +165,17 @@ csgm_status csg_begun_check(const csg_begun *begun, const csg_remesh *r, double 
     *out = (csg_begun_proof){0};
     if (!c.items)
         return csg_context_no_memory(r->context);
-    bool done = csg_pool_run(r->context->pool, count, check_item, report_items, &c);
-    for (size_t i = 0; i < count && done; i++) {
+    csgm_status status = CSGM_OK;
+    if (!csg_ranks_run(r->context, count, CSG_ITEMS_SMALL, check_item, report_items, &c))
+        status = csg_mesh_why_stopped(r->watch);
+    if (csg_ranks_share(r->context, count, CSG_ITEMS_SMALL))
+        status = exchange_items(&c, count, status);
+    for (size_t i = 0; i < count && status == CSGM_OK; i++) {
         out->pieces += c.items[i].pieces;
         if (c.items[i].open && !out->open)
             out->place = c.items[i].place;
         out->open += c.items[i].open;
     }
     csg_memory_release(r->memory, c.items, bytes);
-    return done ? CSGM_OK : csg_mesh_why_stopped(r->watch);
+    return status;
 }

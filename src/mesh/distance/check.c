@@ -7,12 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/pool.h"
+#include "base/rank_loop.h"
 #include "field/point.h"
 #include "grid/octree/octree.h"
 #include "mesh/distance/slopes.h"
 
-enum { PIECES = 1 << 11, STACK = 64 };
+enum { PIECES = 1 << 11, GROUPS = PIECES / CSG_OCTANTS, STACK = 64 };
 
 /* Small triangles that a piece is cut into, along a side. */
 enum { MOST_CUTS = 12, MOST_PLACES = (MOST_CUTS + 1) * (MOST_CUTS + 2) / 2 + CSG_LANES };
@@ -34,6 +34,11 @@ typedef struct settler {
     uint64_t pieces, by_cone;
 } settler;
 
+/* What eight pieces took, with their parts. */
+typedef struct group_work {
+    uint64_t pieces, by_cone;
+} group_work;
+
 typedef struct proof {
     const csg_remesh *remesh;
     double error;
@@ -43,8 +48,9 @@ typedef struct proof {
     size_t scratch_floats;
     piece *pieces;
     size_t count;
-    uint64_t looked_at; /* before these pieces */
-    double settled, at; /* triangles whose pieces are proven, and that of the latest piece */
+    group_work groups[GROUPS]; /* of these pieces */
+    group_work looked_at;      /* before these pieces */
+    double settled, at;        /* triangles whose pieces are proven, and that of the latest piece */
     atomic_bool out_of_memory;
 } proof;
 
@@ -371,8 +377,12 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
     proof *p = user;
     size_t first = group * CSG_OCTANTS, count = p->count - first;
     const csg_tape *whole = &p->remesh->probe.marching->field->tape;
-    if (settle_eight(p, &p->settlers[worker], whole, p->pieces + first,
-                     count < CSG_OCTANTS ? count : CSG_OCTANTS, 0))
+    settler *s = &p->settlers[worker];
+    const group_work before = {s->pieces, s->by_cone};
+    bool done =
+        settle_eight(p, s, whole, p->pieces + first, count < CSG_OCTANTS ? count : CSG_OCTANTS, 0);
+    p->groups[group] = (group_work){s->pieces - before.pieces, s->by_cone - before.by_cone};
+    if (done)
         return !csg_mesh_should_stop(p->remesh->watch);
     atomic_store(&p->out_of_memory, true);
     return false;
@@ -389,15 +399,45 @@ static void report_groups(void *user, size_t done, size_t count)
                                                    p->remesh->corners.triangle_count);
 }
 
+/* What each rank has settled, to all: of a group what it took, then which of its pieces are open.
+ */
+static csgm_status exchange_groups(proof *p, size_t groups, csgm_status own)
+{
+    csgm_context *context = p->remesh->context;
+    csg_records records = {0};
+    csg_record_reader reader;
+    bool done = true;
+    for (size_t i = 0; i < p->count && done && own == CSGM_OK; i++) {
+        size_t group = i / CSG_OCTANTS;
+        if (csg_ranks_have(context, group))
+            done = (i % CSG_OCTANTS || csg_records_add(&context->memory, &records,
+                                                       &p->groups[group], sizeof *p->groups)) &&
+                   csg_records_add(&context->memory, &records, &p->pieces[i].open, sizeof(bool));
+    }
+    csgm_status status = csg_ranks_exchange(context, done ? own : csg_context_no_memory(context),
+                                            groups, &records, &reader);
+    for (size_t i = 0; i < p->count && status == CSGM_OK; i++) {
+        size_t group = i / CSG_OCTANTS;
+        if (i % CSG_OCTANTS == 0)
+            csg_record_read(&reader, group, &p->groups[group], sizeof *p->groups);
+        csg_record_read(&reader, group, &p->pieces[i].open, sizeof(bool));
+    }
+    csg_record_reader_end(&context->memory, &reader);
+    return status;
+}
+
 static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof *out)
 {
     const csg_remesh *r = p->remesh;
     size_t groups = (p->count + CSG_OCTANTS - 1) / CSG_OCTANTS;
-    bool done = csg_pool_run(r->context->pool, groups, settle_group, report_groups, p);
-    if (atomic_load(&p->out_of_memory))
-        return csg_context_no_memory(r->context);
-    if (!done)
-        return csg_mesh_why_stopped(r->watch);
+    csgm_status status = CSGM_OK;
+    if (!csg_ranks_run(r->context, groups, CSG_ITEMS_SMALL, settle_group, report_groups, p))
+        status = atomic_load(&p->out_of_memory) ? csg_context_no_memory(r->context)
+                                                : csg_mesh_why_stopped(r->watch);
+    if (csg_ranks_share(r->context, groups, CSG_ITEMS_SMALL))
+        status = exchange_groups(p, groups, status);
+    if (status != CSGM_OK)
+        return status;
     for (size_t i = 0; i < p->count; i++) {
         if (!p->pieces[i].open)
             continue;
@@ -406,11 +446,12 @@ static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof 
         pending[p->pieces[i].triangle] = 1;
     }
     p->count = 0;
-    p->looked_at = 0;
     p->settled = p->at;
-    for (size_t i = 0; i < p->settler_count; i++)
-        p->looked_at += p->settlers[i].pieces;
-    out->stopped = p->looked_at > MOST_PIECES;
+    for (size_t i = 0; i < groups; i++) {
+        p->looked_at.pieces += p->groups[i].pieces;
+        p->looked_at.by_cone += p->groups[i].by_cone;
+    }
+    out->stopped = p->looked_at.pieces > MOST_PIECES;
     return CSGM_OK;
 }
 
@@ -495,10 +536,8 @@ static csgm_status check_by_field(const csg_remesh *remesh, double error, bool p
         }
     if (status == CSGM_OK && p.count && !out->stopped)
         status = settle_pieces(&p, pending, out);
-    for (size_t i = 0; p.settlers && i < p.settler_count; i++) {
-        out->pieces += p.settlers[i].pieces;
-        out->by_cone += p.settlers[i].by_cone;
-    }
+    out->pieces += p.looked_at.pieces;
+    out->by_cone += p.looked_at.by_cone;
     end(&p);
     return status;
 }

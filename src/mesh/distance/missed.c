@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/pool.h"
+#include "base/rank_loop.h"
 #include "field/point.h"
 #include "grid/octree/octree.h"
 #include "mesh/distance/slopes.h"
@@ -573,28 +573,70 @@ static void report_cubes(void *user, size_t done, size_t count)
     csg_mesh_report_progress(w->remesh->watch, (double)done / (double)count);
 }
 
+/* What each rank has found in its cubes, to all: of a cube its segment, then its points. */
+static csgm_status exchange_cubes(walk *w, size_t count, csgm_status own)
+{
+    csgm_context *context = w->remesh->context;
+    csg_memory *memory = &context->memory;
+    csg_records records = {0};
+    csg_record_reader reader;
+    for (size_t i = 0; i < count && own == CSGM_OK; i++) {
+        const segment *s = &w->segments[w->again ? w->again[i] : i];
+        if (csg_ranks_have(context, i) &&
+            (!csg_records_add(memory, &records, s, sizeof *s) ||
+             !csg_records_add(memory, &records, w->workers[s->worker].points + s->first,
+                              s->count * sizeof(csg_missed_point))))
+            own = csg_context_no_memory(context);
+    }
+    csgm_status status = csg_ranks_exchange(context, own, count, &records, &reader);
+    worker *to = &w->workers[0];
+    for (size_t i = 0; i < count && status == CSGM_OK; i++) {
+        segment *s = &w->segments[w->again ? w->again[i] : i];
+        csg_record_read(&reader, i, s, sizeof *s);
+        s->worker = 0;
+        s->first = to->count;
+        to->count += s->count;
+        if (!csg_memory_reserve(memory, (void **)&to->points, &to->capacity, to->count,
+                                sizeof *to->points))
+            status = csg_context_no_memory(context);
+        else
+            csg_record_read(&reader, i, to->points + s->first, s->count * sizeof *to->points);
+    }
+    csg_record_reader_end(memory, &reader);
+    return status;
+}
+
+static csgm_status look_at_cubes(walk *w, size_t count)
+{
+    csgm_context *context = w->remesh->context;
+    csgm_status status = CSGM_OK;
+    csg_mesh_take(w->remesh->watch, CSGM_STAGE_RESHAPE, SHARE);
+    if (!csg_ranks_run(context, count, CSG_ITEMS_SMALL, look_at_cube, report_cubes, w))
+        status = !atomic_load(&w->out_of_memory) && csg_mesh_should_stop(w->remesh->watch)
+                     ? csg_mesh_why_stopped(w->remesh->watch)
+                     : csg_context_no_memory(context);
+    return csg_ranks_share(context, count, CSG_ITEMS_SMALL) ? exchange_cubes(w, count, status)
+                                                            : status;
+}
+
 /* Few cubes take much more than the others. */
-static bool look_again(walk *w)
+static csgm_status look_again(walk *w)
 {
     csg_memory *memory = w->remesh->memory;
     size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
     w->again = csg_memory_alloc(memory, bytes);
-    if (!w->again) {
-        atomic_store(&w->out_of_memory, true);
-        return false;
-    }
+    if (!w->again)
+        return csg_context_no_memory(w->remesh->context);
     for (size_t i = 0; i < w->segment_count; i++)
         if (w->segments[i].unfinished)
             w->again[count++] = i;
     w->most_cubes = ALL_AGAIN / (count + 1);
     if (w->most_cubes > AGAIN_CUBES)
         w->most_cubes = AGAIN_CUBES;
-    csg_mesh_take(w->remesh->watch, CSGM_STAGE_RESHAPE, SHARE);
-    bool done =
-        !count || csg_pool_run(w->remesh->context->pool, count, look_at_cube, report_cubes, w);
+    csgm_status status = look_at_cubes(w, count);
     csg_memory_release(memory, w->again, bytes);
     w->again = NULL;
-    return done;
+    return status;
 }
 
 static bool gather_segments(const walk *w, csg_missed *out)
@@ -634,16 +676,10 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
     csgm_status status = csg_octree_create(r->context, m->field, m->lattice, &options, &w.octree);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch) : status;
-    bool begun = begin(&w);
-    csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, SHARE);
-    bool done = begun &&
-                csg_pool_run(r->context->pool, w.segment_count, look_at_cube, report_cubes, &w) &&
-                look_again(&w);
-    if (done)
-        done = gather_segments(&w, out);
-    else if (begun && !atomic_load(&w.out_of_memory) && csg_mesh_should_stop(r->watch))
-        status = csg_mesh_why_stopped(r->watch);
-    if (!done && status == CSGM_OK)
+    status = begin(&w) ? look_at_cubes(&w, w.segment_count) : csg_context_no_memory(r->context);
+    if (status == CSGM_OK)
+        status = look_again(&w);
+    if (status == CSGM_OK && !gather_segments(&w, out))
         status = csg_context_no_memory(r->context);
     end(&w);
     if (status != CSGM_OK)

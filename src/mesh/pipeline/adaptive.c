@@ -136,6 +136,11 @@ static bool want_nothing(void *user, uint32_t worker, const csg_bricks *bricks, 
     return true;
 }
 
+static csgm_status why_stopped(void *watch)
+{
+    return csg_mesh_why_stopped(watch);
+}
+
 /* Until every border is simple, and near the surface. */
 static csgm_status refine(adaptive *a)
 {
@@ -150,7 +155,7 @@ static csgm_status refine(adaptive *a)
             status = csg_borders_check_near(&a->extraction, &any);
     }
     a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
-    return status == CSGM_CANCELLED ? csg_mesh_why_stopped(&a->watch) : status;
+    return status;
 }
 
 /* ---- looks ------------------------------------------------------------------------------------- */
@@ -228,9 +233,12 @@ static csgm_status walk(adaptive *a)
     csg_bricks_options options = {.prune = a->input.options->prune,
                                   .most = MOST_BRICKS,
                                   .judge = a->goal->is_own ? want_nothing : csg_judge_brick,
+                                  .tell = a->goal->is_own ? NULL : csg_judge_tell,
+                                  .hear = a->goal->is_own ? NULL : csg_judge_hear,
                                   .judge_user = &a->judge,
                                   .progress = csg_mesh_report_progress,
                                   .cancelled = csg_mesh_should_stop,
+                                  .why = why_stopped,
                                   .user = &a->watch};
     status = csg_bricks_create(context, a->input.field, &a->lattice, &options, &a->bricks);
     if (status != CSGM_OK)

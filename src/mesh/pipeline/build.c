@@ -98,7 +98,10 @@ static void connect_stages(build *b, csgm_context *context, const csgm_mesh_opti
                                     .workers = &b->workers,
                                     .sharp = options->features == CSGM_FEATURES_SHARP,
                                     .split = options->normals == CSGM_NORMALS_CREASE};
-    b->slabs = (csg_mesh_slabs){.watch = &b->watch, .workers = &b->workers, .creases = &b->creases};
+    b->slabs = (csg_mesh_slabs){.watch = &b->watch,
+                                .workers = &b->workers,
+                                .creases = &b->creases,
+                                .is_whole = b->goal != NULL};
     b->output.watch = &b->watch;
     b->output.workers = &b->workers;
     b->output.creases = &b->creases;

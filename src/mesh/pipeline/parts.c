@@ -175,28 +175,57 @@ static csgm_status build_parts(csgm_context *context, const csgm_field *field,
     return status;
 }
 
-csgm_status csg_mesh_check_ranks(csgm_context *context, const csgm_mesh_options *options)
+/* What ranks must have in common to reshape one mesh, of a field without parts or a part. */
+typedef struct common {
+    uint64_t tape, triangles;
+    double size[4], lipschitz;
+    csg_box bounds[2];
+    uint32_t ways[7];
+} common;
+
+static common common_of(const csgm_field *field, const csgm_mesh_options *o)
 {
-    if (!context->ranks || !csg_mesh_is_reshaped(options))
-        return CSGM_OK;
-    if (csg_ranks_is_first(context))
-        csg_diag_plain(
-            &context->diags, CSG_DIAG_RANKS_ALONE, NULL,
-            "give the cells' size by -r or -s; one process can do the rest",
-            "several processes make meshes of equal cells only, and change none of their "
-            "triangles");
-    return CSGM_ERR_UNSUPPORTED;
+    common own;
+    memset(&own, 0, sizeof own); /* between its members, too */
+    own.tape = field->tape.count;
+    own.triangles = o->triangles;
+    own.lipschitz = (double)field->tape.lipschitz;
+    own.bounds[0] = field->bounds;
+    own.bounds[1] = o->bounds;
+    const double size[] = {o->tolerance, o->simplify_error, o->simplify_share, o->cell_size};
+    const uint32_t ways[] = {o->resolution,        (uint32_t)o->quality, (uint32_t)o->features,
+                             (uint32_t)o->normals, (uint32_t)o->improve, (uint32_t)o->colors,
+                             (uint32_t)o->prune};
+    memcpy(own.size, size, sizeof size);
+    memcpy(own.ways, ways, sizeof ways);
+    return own;
+}
+
+/* Ranks with another scene would wait for each other in different places. */
+static csgm_status compare_ranks(csgm_context *context, const csgm_field *field,
+                                 const csgm_mesh_options *options)
+{
+    size_t count = field->part_count ? field->part_count : 1;
+    common *each = csg_memory_alloc(&context->memory, count * sizeof *each);
+    for (size_t i = 0; each && i < count; i++)
+        each[i] = common_of(field->part_count ? field->parts[i].field : field, options);
+    csgm_status status = csg_ranks_agree(context, each ? CSGM_OK : csg_context_no_memory(context));
+    if (status == CSGM_OK)
+        status = csg_mesh_ranks_compare(context, each, count * sizeof *each);
+    csg_memory_release(&context->memory, each, each ? count * sizeof *each : 0);
+    return status;
 }
 
 csgm_status csg_mesh_build(csgm_context *context, const csgm_field *field,
                            const csgm_mesh_options *options, csgm_mesh **out,
                            csgm_mesh_stats *stats)
 {
-    csgm_status status = csg_mesh_check_ranks(context, options);
-    if (status != CSGM_OK)
-        return status;
-    status = field->part_count ? build_parts(context, field, options, out, stats)
-                               : build_part(context, field, options, NULL, out, stats);
+    csgm_status status = CSGM_OK;
+    if (context->ranks && csg_mesh_is_reshaped(options))
+        status = compare_ranks(context, field, options);
+    if (status == CSGM_OK)
+        status = field->part_count ? build_parts(context, field, options, out, stats)
+                                   : build_part(context, field, options, NULL, out, stats);
     status = csg_mesh_ranks_settle(context, status, out);
     if (status == CSGM_OK)
         (*out)->equal_cells = csg_mesh_can_stream(field, options);

@@ -18,7 +18,4 @@ bool csg_mesh_can_stream(const csgm_field *field, const csgm_mesh_options *optio
  * has none. (Of a field that can be streamed.) */
 double csg_mesh_distance(const csgm_field *field, const csgm_mesh_options *options);
 
-/* Refuses what the ranks of a communicator cannot do together (reported by the first). */
-csgm_status csg_mesh_check_ranks(csgm_context *context, const csgm_mesh_options *options);
-
 #endif

@@ -105,6 +105,33 @@ typedef struct common {
     uint32_t blocks[3], features;
 } common;
 
+/* Whether this process has a stretch of the frontier, and others have the rest. */
+static bool has_stretch(const csg_mesh_slabs *s)
+{
+    return s->watch->context->ranks && !s->is_whole;
+}
+
+csgm_status csg_mesh_ranks_compare(csgm_context *context, const void *own, size_t bytes)
+{
+    csg_rank_pieces all;
+    csgm_status status = csg_ranks_gather(context, CSGM_OK, CSGM_ALL_RANKS, own, bytes, &all);
+    if (status != CSGM_OK)
+        return status;
+    const uint8_t *first = all.bytes;
+    uint32_t other = 0;
+    while (other < context->ranks->by.count && context->ranks->bytes[other] == bytes &&
+           !memcmp(first, first + other * bytes, bytes))
+        other++;
+    csg_rank_pieces_release(&context->memory, &all);
+    if (other == context->ranks->by.count)
+        return CSGM_OK;
+    if (csg_ranks_is_first(context))
+        csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
+                       "all need the same scene, options and build of csgmesh",
+                       "rank %u makes another mesh than rank 0", (unsigned)other);
+    return CSGM_ERR_ARGUMENT;
+}
+
 /* Another scene, or another build, would make another mesh, and so would what one has kept. */
 static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
 {
@@ -121,30 +148,17 @@ static csgm_status compare(csg_mesh_slabs *s, csgm_status status)
     own.origin = lattice->origin;
     memcpy(own.blocks, lattice->blocks, sizeof own.blocks);
     own.features = s->creases->sharp + 2u * s->creases->split;
-    csg_rank_pieces all;
-    status = csg_ranks_gather(context, CSGM_OK, CSGM_ALL_RANKS, &own, sizeof own, &all);
-    if (status != CSGM_OK)
-        return status;
-    const common *each = all.bytes;
-    uint32_t other = 0;
-    while (other < context->ranks->by.count && !memcmp(each, &each[other], sizeof own))
-        other++;
-    csg_rank_pieces_release(&context->memory, &all);
-    if (other == context->ranks->by.count)
-        return csg_ranks_agree(context, csg_mesh_keep_begin(s, &own, sizeof own));
-    if (csg_ranks_is_first(context))
-        csg_diag_plain(&context->diags, CSG_DIAG_RANKS_FAILED, NULL,
-                       "all need the same scene, options and build of csgmesh",
-                       "rank %u makes another mesh than rank 0", (unsigned)other);
-    return CSGM_ERR_ARGUMENT;
+    status = csg_mesh_ranks_compare(context, &own, sizeof own);
+    return status == CSGM_OK ? csg_ranks_agree(context, csg_mesh_keep_begin(s, &own, sizeof own))
+                             : status;
 }
 
 csgm_status csg_mesh_ranks_share(csg_mesh_slabs *s, csgm_status own)
 {
     csgm_context *context = s->watch->context;
-    if (!context->ranks && own != CSGM_OK)
+    if (!has_stretch(s) && own != CSGM_OK)
         return own;
-    if (!context->ranks) {
+    if (!has_stretch(s)) {
         s->end_cell = csg_octree_frontier_count(s->octree);
         return CSGM_OK;
     }
@@ -370,9 +384,8 @@ static csgm_status number(csg_mesh_slabs *s, csgm_status own)
 
 csgm_status csg_mesh_ranks_number(csg_mesh_slabs *s, csgm_status own)
 {
-    csgm_context *context = s->watch->context;
-    if (!context->ranks)
+    if (!has_stretch(s))
         return own == CSGM_OK ? csg_mesh_check_numbers(s) : own;
-    CSG_ZONE(context, "numbers of ranks");
+    CSG_ZONE(s->watch->context, "numbers of ranks");
     return number(s, own);
 }

@@ -4,6 +4,9 @@
  * a halo that it samples again. Counts of all frontier cubes are exchanged, so each knows the
  * numbers of its vertices and of the halo's; features are found by the rank that has their block
  * and settled by all alike, in the order of one process. So the mesh is that of one process.
+ *
+ * Meshes that are reshaped, and those of cells that follow the shape, are whole on every rank:
+ * there the loops over cells and cubes of space are shared out (base/rank_loop.h).
  */
 #ifndef CSG_MESH_PIPELINE_RANKS_H
 #define CSG_MESH_PIPELINE_RANKS_H
@@ -23,7 +26,11 @@ csgm_status csg_mesh_ranks_resume(csg_mesh_output *output, csg_mesh_slabs *slabs
 /* After all is made, or `own` has ended it: the box of all clipped vertices, and, where the mesh is
  * not for a receiver, the whole mesh on the first rank and an empty one on the others. */
 csgm_status csg_mesh_ranks_join(csg_mesh_output *output, csg_mesh_slabs *slabs, csgm_status own);
-/* A mesh that is complete on this rank, or `own` has ended it: only if it is on all. */
+/* Whether all have the same bytes, which say what they are about to make: else it is refused, and
+ * reported by the first. Only with ranks. */
+csgm_status csg_mesh_ranks_compare(csgm_context *context, const void *own, size_t bytes);
+/* A mesh that is complete on this rank, or `own` has ended it: only if it is on all. It stays with
+ * the first, the others get one without triangles. */
 csgm_status csg_mesh_ranks_settle(csgm_context *context, csgm_status own, csgm_mesh **mesh);
 
 #endif

@@ -99,7 +99,7 @@ static csgm_status join_mesh(csg_mesh_output *o, csgm_status own)
 csgm_status csg_mesh_ranks_join(csg_mesh_output *o, csg_mesh_slabs *s, csgm_status own)
 {
     csgm_context *context = o->watch->context;
-    if (!context->ranks)
+    if (!context->ranks || s->is_whole)
         return own;
     CSG_ZONE(context, "joining ranks");
     csgm_status status = csg_ranks_agree(context, own);
@@ -113,10 +113,27 @@ csgm_status csg_mesh_ranks_join(csg_mesh_output *o, csg_mesh_slabs *s, csgm_stat
     return status;
 }
 
+/* An empty mesh in place of one that all ranks have, on all but the first. */
+static csgm_status leave_to_first(csgm_context *context, csgm_mesh **mesh)
+{
+    csgm_mesh *whole = *mesh;
+    if (csg_ranks_is_first(context) || !whole->triangle_count)
+        return CSGM_OK;
+    csgm_status status = csg_mesh_create(context, 0, 0, false, false, mesh);
+    if (status == CSGM_OK)
+        csg_mesh_destroy(whole);
+    else
+        *mesh = whole;
+    return status;
+}
+
 csgm_status csg_mesh_ranks_settle(csgm_context *context, csgm_status own, csgm_mesh **mesh)
 {
+    bool has_mesh = own == CSGM_OK;
+    if (has_mesh && context->ranks)
+        own = leave_to_first(context, mesh);
     csgm_status status = csg_ranks_agree(context, own);
-    if (own == CSGM_OK && status != CSGM_OK) {
+    if (has_mesh && status != CSGM_OK) {
         csg_mesh_destroy(*mesh);
         *mesh = NULL;
     }

@@ -54,6 +54,7 @@ typedef struct csg_mesh_slabs {
     /* made */
     csg_octree *octree;          /* NULL when there is nothing to mesh */
     size_t first_cell, end_cell; /* of the frontier: what this process meshes */
+    bool is_whole;               /* all of it on each rank: the mesh is reshaped, by all blocks */
     csg_slab *slabs;
     size_t count;
     size_t to_make;          /* of them, the first: the others are made (keep.h) */

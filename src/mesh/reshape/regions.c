@@ -2,18 +2,19 @@
  * Thinning out on all threads; see decimate.h. Space is cut into cubes, an octree of those that
  * hold many triangles. What lies in a cube with all that it meets in a vertex is changed there, and
  * new triangles stay in it: so nothing of one cube ever meets what another changes, and each is
- * done on any thread. Triangles that lie across the sides of cubes stay as they are; the cubes that
- * come next are shifted by a third of their size, and the last one holds everything. Which cubes
- * there are depends on the mesh and its place alone: so does the result.
+ * done on any thread, of any rank. Triangles that lie across the sides of cubes stay as they are;
+ * the cubes that come next are shifted by a third of their size, and the last one holds everything.
+ * Which cubes there are depends on the mesh and its place alone: so does the result.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/elementary.h"
-#include "base/pool.h"
 #include "base/trace.h"
 #include "field/field.h"
 #include "mesh/reshape/decimate.h"
+#include "mesh/reshape/region_record.h"
 
 enum { MOST_OF_REGION = 10000, DEEPEST = 16, ROUNDS = 3 };
 /* csg_triangle_quality of triangles that may be made. */
@@ -25,7 +26,8 @@ typedef struct region {
     size_t first;
     uint32_t count;
     csg_vec3 low, high;
-    uint32_t removed; /* of the triangles */
+    uint32_t removed;                    /* of the triangles */
+    uint32_t first_vertex, vertex_count; /* in cutting.vertices */
 } region;
 
 /* What one thread needs: its own view of the mesh, whose arrays are shared. */
@@ -46,10 +48,15 @@ typedef struct cutting {
     size_t item_count, item_capacity;
     region *regions;
     size_t region_count, region_capacity;
+    size_t *order; /* of regions: those of most triangles first */
+    size_t order_capacity;
+    uint32_t *vertices; /* of one region after another; NULL: nobody else has to be told */
+    uint32_t *version;  /* per vertex, before the round; NULL likewise */
     csg_arena arena;
     worker *workers;
     uint32_t worker_count;
     atomic_int status;
+    bool is_reported; /* what has ended it */
 } cutting;
 
 /* ---- cubes -------------------------------------------------------------------------------------
@@ -86,7 +93,7 @@ static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3
     double margin = margin_of(c->d->remesh);
     csg_vec3 by = {margin, margin, margin};
     region *new = &c->regions[c->region_count];
-    *new = (region){c->item_count, count, csg_vec3_add(low, by), csg_vec3_sub(high, by), 0};
+    *new = (region){c->item_count, count, csg_vec3_add(low, by), csg_vec3_sub(high, by), 0, 0, 0};
     memcpy(c->items + c->item_count, ids, count * sizeof *ids);
     for (uint32_t i = 0; i < count; i++) {
         if (!is_in(&c->boxes[ids[i]], new->low, new->high))
@@ -198,9 +205,10 @@ static bool make_cubes(cutting *c, int round)
 /* ---- one region --------------------------------------------------------------------------------
  */
 
-static bool thin_out_region(void *user, uint32_t worker_index, size_t index)
+static bool thin_out_region(void *user, uint32_t worker_index, size_t place)
 {
     cutting *c = user;
+    size_t index = c->order[place];
     worker *w = &c->workers[worker_index];
     const csg_remesh *whole = c->d->remesh;
     region *g = &c->regions[index];
@@ -234,20 +242,132 @@ static void report_regions(void *user, size_t done, size_t count)
     csg_mesh_report_progress(c->d->remesh->watch, (double)done / (double)count);
 }
 
+typedef struct weighed {
+    uint32_t count;
+    size_t index;
+} weighed;
+
+static int compare_weighed(const void *a, const void *b)
+{
+    const weighed *p = a, *q = b;
+    int order = (p->count < q->count) - (p->count > q->count);
+    return order ? order : (p->index > q->index) - (p->index < q->index);
+}
+
+/* The order in which regions are taken, and shared out: so nobody has much more than others. */
+static bool order_regions(cutting *c)
+{
+    csg_memory *memory = c->d->remesh->memory;
+    weighed *each = csg_arena_alloc(&c->arena, c->region_count * sizeof *each);
+    if (!each || !csg_memory_reserve(memory, (void **)&c->order, &c->order_capacity,
+                                     c->region_count, sizeof *c->order))
+        return false;
+    for (size_t i = 0; i < c->region_count; i++)
+        each[i] = (weighed){c->regions[i].count, i};
+    qsort(each, c->region_count, sizeof *each, compare_weighed);
+    for (size_t i = 0; i < c->region_count; i++)
+        c->order[i] = each[i].index;
+    csg_arena_reset(&c->arena);
+    return true;
+}
+
+/* ---- what other ranks have made of theirs ------------------------------------------------------
+ */
+
+/* The vertices of each region, and how they are before it is changed. */
+static void note_before(cutting *c)
+{
+    const csg_corners *m = &c->d->remesh->corners;
+    uint32_t first = 0;
+    memcpy(c->version, c->d->version, m->vertex_count * sizeof *c->version);
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        if (c->region_of[v] < c->region_count)
+            c->regions[c->region_of[v]].vertex_count++;
+    for (size_t i = 0; i < c->region_count; i++) {
+        c->regions[i].first_vertex = first;
+        first += c->regions[i].vertex_count;
+        c->regions[i].vertex_count = 0;
+    }
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        if (c->region_of[v] < c->region_count) {
+            region *g = &c->regions[c->region_of[v]];
+            c->vertices[g->first_vertex + g->vertex_count++] = v;
+        }
+}
+
+static csg_region_of_mesh region_of_mesh(const cutting *c, size_t index)
+{
+    const region *g = &c->regions[index];
+    return (csg_region_of_mesh){.decimation = c->d,
+                                .triangles = c->items + g->first,
+                                .inside = c->inside,
+                                .vertices = c->vertices + g->first_vertex,
+                                .version = c->version,
+                                .region = (uint32_t)index,
+                                .triangle_count = g->count,
+                                .vertex_count = g->vertex_count};
+}
+
+static csgm_status report_end(const csg_remesh *r, csgm_status status)
+{
+    return status == CSGM_ERR_MEMORY  ? csg_context_no_memory(r->context)
+           : status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch)
+                                      : status;
+}
+
+/* Records of this rank's regions to all, and theirs taken over. */
+static csgm_status exchange_regions(cutting *c, csgm_status own)
+{
+    csgm_context *context = c->d->remesh->context;
+    csg_records records = {0};
+    csg_record_reader reader;
+    for (size_t i = 0; i < c->region_count && own == CSGM_OK; i++) {
+        if (!csg_ranks_have(context, i))
+            continue;
+        csg_region_of_mesh g = region_of_mesh(c, c->order[i]);
+        if (!csg_records_add(&context->memory, &records, &c->regions[g.region].removed,
+                             sizeof(uint32_t)) ||
+            !csg_region_pack(&g, &records))
+            own = csg_context_no_memory(context);
+    }
+    csgm_status status = csg_ranks_exchange(context, own, c->region_count, &records, &reader);
+    for (size_t i = 0; i < c->region_count && status == CSGM_OK; i++) {
+        if (csg_ranks_have(context, i))
+            continue;
+        csg_region_of_mesh g = region_of_mesh(c, c->order[i]);
+        csg_record_read(&reader, i, &c->regions[g.region].removed, sizeof(uint32_t));
+        csg_region_unpack(&g, &reader, i);
+    }
+    csg_record_reader_end(&context->memory, &reader);
+    return status;
+}
+
+/* ---- rounds ------------------------------------------------------------------------------------
+ */
+
 static csgm_status run_round(cutting *c, int round)
 {
     csg_remesh *r = c->d->remesh;
-    if (!make_cubes(c, round))
+    if (!make_cubes(c, round) || !order_regions(c))
         return CSGM_ERR_MEMORY;
+    bool shares = csg_ranks_share(r->context, c->region_count, CSG_ITEMS_LARGE);
+    if (shares)
+        note_before(c);
     c->d->region_of = c->region_of;
     for (uint32_t i = 0; i < c->worker_count; i++)
         c->workers[i].decimation.region_of = c->region_of;
     csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
-    if (!csg_pool_run(r->context->pool, c->region_count, thin_out_region, report_regions, c))
-        return (csgm_status)atomic_load(&c->status);
-    for (size_t i = 0; i < c->region_count; i++)
+    csgm_status status = CSGM_OK;
+    if (!csg_ranks_run(r->context, c->region_count, CSG_ITEMS_LARGE, thin_out_region,
+                       report_regions, c))
+        status = (csgm_status)atomic_load(&c->status);
+    if (shares) {
+        status = exchange_regions(c, report_end(r, status));
+        c->is_reported = status != CSGM_OK;
+    }
+    for (size_t i = 0; i < c->region_count && status == CSGM_OK; i++)
         r->corners.live -= c->regions[i].removed;
-    return CSGM_OK;
+    return status;
 }
 
 /* What is left, as one region. */
@@ -328,6 +448,11 @@ static bool begin(cutting *c, bool in_cubes)
     c->worker_count = csg_pool_threads(r->context->pool);
     c->workers = csg_memory_alloc(memory, c->worker_count * sizeof *c->workers);
     bool done = c->boxes && c->slots && c->inside && c->workers;
+    if (r->context->ranks) {
+        c->vertices = csg_memory_alloc(memory, vertices * sizeof *c->vertices);
+        c->version = csg_memory_alloc(memory, vertices * sizeof *c->version);
+        done = done && c->vertices && c->version;
+    }
     for (uint32_t i = 0; c->workers && i < c->worker_count; i++)
         done = begin_worker(c, &c->workers[i]) && done;
     return done;
@@ -343,6 +468,9 @@ static void end(cutting *c)
         c->d->made += c->workers[i].decimation.made;
         end_worker(&c->workers[i], memory);
     }
+    csg_memory_release(memory, c->order, c->order_capacity * sizeof *c->order);
+    csg_memory_release(memory, c->version, vertices * sizeof *c->version);
+    csg_memory_release(memory, c->vertices, vertices * sizeof *c->vertices);
     csg_memory_release(memory, c->workers, c->worker_count * sizeof *c->workers);
     csg_memory_release(memory, c->inside, triangles * sizeof *c->inside);
     csg_memory_release(memory, c->slots, triangles * sizeof *c->slots);
@@ -382,7 +510,5 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     if (status == CSGM_OK)
         status = make_tree_again(r);
     end(&c);
-    return status == CSGM_ERR_MEMORY  ? csg_context_no_memory(r->context)
-           : status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch)
-                                      : status;
+    return c.is_reported ? status : report_end(r, status);
 }

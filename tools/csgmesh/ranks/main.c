@@ -37,9 +37,6 @@ static int refuse_options(cli_app *app)
     int status = cli_ranks_refuse_options(app);
     if (status != CLI_DONE)
         return status;
-    if (!o->resolution && !o->given[CLI_OPTION_cell_size])
-        return cli_usage_error(app, "as -r 2048; csgmesh makes the others",
-                               "csgmesh-mpi makes meshes of equal cells: give -r or -s");
     if (o->outputs.count != 1 || strcmp(o->outputs.items[0], "-") == 0)
         return cli_usage_error(app, "as -o lattice.ply",
                                "csgmesh-mpi writes one file: give one -o");
@@ -136,6 +133,7 @@ static void put_share(cli_json *json, const share *of)
     cli_json_open(json, NULL, '{');
     cli_json_count(json, "cubes", of->work.cubes);
     cli_json_count(json, "halo_cubes", of->work.halo_cubes);
+    cli_json_count(json, "tasks", of->work.tasks);
     cli_json_count(json, "vertices", of->work.vertices);
     cli_json_count(json, "triangles", of->work.triangles);
     cli_json_count(json, "received_bytes", of->work.received_bytes);
