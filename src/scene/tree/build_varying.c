@@ -160,7 +160,7 @@ static size_t without_empty(const csg_scene_builder *builder, csg_node_kind kind
     return kept;
 }
 
-static csg_node_id fold(varying *v, const csg_node_id *operands, size_t count)
+static csg_node_id fold(varying *v, csg_node_id *operands, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (csg_build_is_flat(v->builder, operands[i])) {
@@ -177,6 +177,8 @@ static csg_node_id fold(varying *v, const csg_node_id *operands, size_t count)
         return CSG_NODE_NONE;
     if (!(v->range[1] > CSG_SMALLEST_LENGTH)) /* as a blend without width */
         return csg_build_operator(v->builder, v->kind, CSG_SHARP, operands, count, v->where);
+    if (!csg_build_end_plateaus(v->builder, v->kind, v->range[1], operands, count))
+        return CSG_NODE_NONE;
     csg_node_id node = operands[0];
     double scale = 1;
     for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++)
