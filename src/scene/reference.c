@@ -7,6 +7,7 @@
 #include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/choice.h"
+#include "scene/operators/combine.h"
 #include "scene/operators/fillet.h"
 #include "scene/operators/rule.h"
 #include "scene/operators/soft.h"
@@ -245,16 +246,20 @@ static csg_sample combine_by_formula(const csg_reference_work *w, const csgm_sce
                                      const csg_node_id *at)
 {
     const csg_formula *formula = &scene->formulas[node->payload];
-    double values[3] = {0};
+    double values[CSG_COMBINE_MOST] = {0};
+    csg_sample out = {0, {0, 0, 0}};
     for (uint32_t k = 0; k < node->child_count; k++)
         values[k] = samples[at[k]].value;
-    csg_formula_dual dual = csg_formula_evaluate(
-        scene->steps, formula, csg_vec3_make(values[0], values[1], values[2]), w->steps);
-    const double partials[3] = {dual.gradient.x, dual.gradient.y, dual.gradient.z};
-    csg_sample out = {dual.value / formula->lipschitz, {0, 0, 0}};
-    for (uint32_t k = 0; k < node->child_count; k++)
-        out.gradient = csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[k]].gradient,
-                                                                 partials[k] / formula->lipschitz));
+    for (uint32_t first = 0; first < node->child_count; first += 3) {
+        csg_formula_dual dual =
+            csg_formula_evaluate_group(scene->steps, formula, values, first / 3, w->steps);
+        const double partials[3] = {dual.gradient.x, dual.gradient.y, dual.gradient.z};
+        out.value = dual.value / formula->lipschitz;
+        for (uint32_t k = 0; k < 3 && first + k < node->child_count; k++)
+            out.gradient =
+                csg_vec3_add(out.gradient, csg_vec3_scale(samples[at[first + k]].gradient,
+                                                          partials[k] / formula->lipschitz));
+    }
     return out;
 }
 

@@ -167,6 +167,12 @@ static void scenes_of_every_module_parse_back(void **state)
         "hull() { sphere(1); translate([3, 0.1, 0.2]) rotate([5, 6, 7]) cube(1); }",
         "combine(function (a, b) max(a, b) + 0.1 * exp(-abs(a - b))) { sphere(1); cube(1); }",
         "combine(function (a) a + 0.1 * sin(100 * a)) sphere(1);",
+        "combine(function (f) (f[0] + f[1] + max(f) - abs(f[4])) / 3) { sphere(1); cube(1); "
+        "sphere(2); "
+        "cube(2); cylinder(h = 2, r = 1); }",
+        "combine(function (a, b, c, d) a / 2 - b / 4 + c / 8 + sin(d)) { sphere(1); cube(1); "
+        "sphere(2); "
+        "cube(2); }",
         "combine(function (a, b, c) a - max(b, c) / 2, lipschitz = 1.5) { sphere(2); circle(1); "
         "cube(1); }",
         "combine(function (a, b) min(a, b), bounds = [[-1, -1, -1], [1, 1, 1/3]]) { sphere(1); "
@@ -295,7 +301,9 @@ static void what_is_no_node_is_refused(void **state)
         {"linear_extrude(1) polygon([[0, 0], [0, 0], [1, 1]], clean = true);", -325},
         {"combine(function (a) a) { sphere(1); cube(1); }", 301},
         {"combine(function (a) a);", 308},
-        {"combine(function (a) a) { sphere(1); cube(1); plane(); slab(); }", 308},
+        {"combine(function (a) a) { sphere(1); cube(1); plane(); slab(); }", 301},
+        {"combine(function (a, b) a) { sphere(1); cube(1); plane(); slab(); }", 301},
+        {"combine(function (f) f[0] + f[4]) { sphere(1); cube(1); plane(); slab(); }", 301},
         {"combine(3) sphere(1);", 301},
         {"combine(function (a) \"a\") sphere(1);", 301},
         {"combine(function (a) a * a) sphere(1);", 308},

@@ -157,6 +157,48 @@ static csg_formula_id random_formula(terms *t, csg_random *random, bool three)
     return apply(t, CSG_FORMULA_MUL, csg_formula_constant(&t->builder, 0.5), sum);
 }
 
+enum { MOST_COMBINED = 8 };
+
+/* Of four and more: (sum of all + sqrt(e + sum of squares of neighbours' differences) + a maximum
+ * of a first and a last) / count; steep by several, not monotone. */
+static csg_formula_id random_wide_formula(terms *t, csg_random *random, uint32_t count)
+{
+    csg_formula_id v[MOST_COMBINED];
+    csg_formula_id under = csg_formula_constant(&t->builder, uniform(random, 0.001, 0.02));
+    for (uint32_t k = 0; k < count; k++)
+        v[k] = csg_formula_variable(&t->builder, k);
+    csg_formula_id sum = apply(t, CSG_FORMULA_MAX, v[0], v[count - 1]);
+    for (uint32_t k = 0; k < count; k++) {
+        csg_formula_id d = apply(t, CSG_FORMULA_SUB, v[k], v[(k + 1) % count]);
+        under = apply(t, CSG_FORMULA_ADD, under, apply(t, CSG_FORMULA_MUL, d, d));
+        sum = apply(t, CSG_FORMULA_ADD, sum, v[k]);
+    }
+    sum = apply(t, CSG_FORMULA_ADD, sum, apply(t, CSG_FORMULA_SQRT, under, under));
+    return apply(t, CSG_FORMULA_MUL, csg_formula_constant(&t->builder, 1.0 / count), sum);
+}
+
+static csg_node_id combined_wide(csg_scene_builder *builder, csg_random *random)
+{
+    terms t;
+    csg_formula_step steps[128];
+    csg_node_id operands[MOST_COMBINED];
+    uint32_t count = 4 + csg_random_below(random, MOST_COMBINED - 3);
+    for (uint32_t k = 0; k < count; k++) {
+        csg_affine place = test_random_affine(random, 0.6, 1.2, 0.3);
+        operands[k] = csg_build_transform(builder, &place, solid(builder, random), nowhere);
+    }
+    csg_formula_begin(&t.builder, &builder->context->memory);
+    csg_formula_id result = random_wide_formula(&t, random, count);
+    uint32_t step_count = csg_formula_collect(&t.builder, result, steps);
+    csg_formula_end(&t.builder);
+    double half[4] = {1.2, 1.2, 1.2, 0};
+    csg_node_id cut[2] = {
+        csg_build_combine(builder, steps, step_count, 0, operands, count, nowhere),
+        csg_build_primitive(builder, CSG_NODE_BOX, half, nowhere)};
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0}, cut,
+                              2, nowhere);
+}
+
 static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
 {
     terms t;
@@ -213,7 +255,8 @@ csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random)
         return warped(builder, (csg_warp){CSG_WARP_BEND, {uniform(random, 2.6, 4)}},
                       solid(builder, random));
     case 6:
-        return combined(builder, random);
+        return csg_random_below(random, 2) ? combined_wide(builder, random)
+                                           : combined(builder, random);
     default:
         return slice(builder, random);
     }

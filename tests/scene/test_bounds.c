@@ -8,12 +8,14 @@
 #include "scene_fixture.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "random_blend.h"
 #include "random_scene.h"
 #include "scene/boxes/exterior.h"
 #include "scene/boxes/level_boxes.h"
 #include "scene/formula/formula.h"
+#include "scene/operators/combine.h"
 #include "scene/primitives/kinds.h"
 #include "scene/warp_kinds.h"
 
@@ -273,11 +275,12 @@ static double operate(const csg_node *node, const csgm_scene *scene, double *val
 
 static double formula_value(const valuer *v, const csg_node *node, const double *values)
 {
-    csg_formula_dual work[64];
+    csg_formula_dual work[128];
+    double at[CSG_COMBINE_MOST] = {0};
     const csg_formula *formula = &v->scene->formulas[node->payload];
-    csg_vec3 at = {values[0], node->child_count > 1 ? values[1] : 0,
-                   node->child_count > 2 ? values[2] : 0};
-    return csg_formula_evaluate(v->scene->steps, formula, at, work).value / formula->lipschitz;
+    memcpy(at, values, node->child_count * sizeof *at);
+    return csg_formula_evaluate_group(v->scene->steps, formula, at, 0, work).value /
+           formula->lipschitz;
 }
 
 static double value_of(const valuer *v, csg_node_id id, csg_vec3 p)

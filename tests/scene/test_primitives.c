@@ -10,6 +10,7 @@
 #include "random_scene.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
+#include "scene/primitives/superellipsoid.h"
 
 enum { SETS = 5, SURFACE_POINTS = 2000, QUERIES = 60 };
 
@@ -393,14 +394,67 @@ static void test_ellipsoid_extreme(void **state)
     }
 }
 
+/* ---- a stated factor ------------------------------------------------------------------------- */
+
+/* The largest hypot(a u, b w) where |u|^p + |w|^p <= 1 (Hoelder). */
+static double farthest_of_two(double a, double b, double p)
+{
+    return p > 2 ? sqrt(csg_dual_norm(a * a, b * b, p / 2)) : fmax(a, b);
+}
+
+/* |f| <= distance <= K |f| as the manual says it: K is the farthest point's distance from the centre over the
+ * shortest semi-axis for exponents of 2 and more, times the gauge's constant in general. */
+static void test_superellipsoid_factor(void **state)
+{
+    enum { SOLIDS = 40, SAMPLES = 20, POINTS = 200 };
+    csg_random random = {11};
+    (void)state;
+    for (int i = 0; i < SOLIDS; i++) {
+        double v[6] = {csg_random_uniform(&random, 1, 9), csg_random_uniform(&random, 1, 9),
+                       csg_random_uniform(&random, 1, 9), csg_random_uniform(&random, 1, 9),
+                       csg_random_uniform(&random, 1, 9), 0};
+        csg_refusal refusal;
+        assert_true(csg_superellipsoid_check(&refusal, v));
+        double far = farthest_of_two(farthest_of_two(v[0], v[1], v[3]), v[2], v[4]), reached = 0;
+        double least = fmin(v[0], fmin(v[1], v[2]));
+        if (v[3] >= 2 && v[4] >= 2)
+            assert_true(fabs(v[5] * least - 1) < 1e-12);
+        for (int n = 0; n < SAMPLES; n++) {
+            csg_vec3 p = {csg_random_uniform(&random, -12, 12),
+                          csg_random_uniform(&random, -12, 12),
+                          csg_random_uniform(&random, -12, 12)};
+            double f = csg_superellipsoid_distance(v, p).value, nearest = INFINITY;
+            for (int k = 0; k < POINTS;
+                 k++) { /* of the surface; the first along the ray through p */
+                csg_vec3 q = k ? csg_vec3_make(csg_random_uniform(&random, -1, 1),
+                                               csg_random_uniform(&random, -1, 1),
+                                               csg_random_uniform(&random, -1, 1))
+                               : p;
+                q = csg_vec3_scale(q, 1 / (1 - v[5] * csg_superellipsoid_distance(v, q).value));
+                reached = fmax(reached, csg_vec3_norm(q) / far);
+                nearest = fmin(nearest, csg_vec3_norm(csg_vec3_sub(p, q)));
+            }
+            assert_true(fabs(f) <= nearest * (1 + 1e-12));
+            assert_true(nearest <= far * v[5] * fabs(f) * (1 + 1e-12));
+        }
+        assert_true(reached <= 1 + 1e-12 && reached > 0.8);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_distance),         cmocka_unit_test(test_plane),
-        cmocka_unit_test(test_support),          cmocka_unit_test(test_lipschitz),
-        cmocka_unit_test(test_gradient),         cmocka_unit_test(test_critical_points),
-        cmocka_unit_test(test_pointed_cone),     cmocka_unit_test(test_torus_arc),
-        cmocka_unit_test(test_ellipsoid_medial), cmocka_unit_test(test_ellipsoid_extreme),
+        cmocka_unit_test(test_distance),
+        cmocka_unit_test(test_plane),
+        cmocka_unit_test(test_superellipsoid_factor),
+        cmocka_unit_test(test_support),
+        cmocka_unit_test(test_lipschitz),
+        cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_critical_points),
+        cmocka_unit_test(test_pointed_cone),
+        cmocka_unit_test(test_torus_arc),
+        cmocka_unit_test(test_ellipsoid_medial),
+        cmocka_unit_test(test_ellipsoid_extreme),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

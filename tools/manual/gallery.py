@@ -1,20 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Makes the gallery of the literature's figures: scenes/papers/README.md and docs/pictures/papers.
+"""Makes the gallery of the literature's figures: scenes/papers/README.md, the pages of docs/papers and docs/pictures/papers.
 
     python3 tools/manual/gallery.py CSGMESH             makes what is out of date
     python3 tools/manual/gallery.py CSGMESH --all       makes everything
     python3 tools/manual/gallery.py --check             exit status 1 when page, scenes and pictures disagree
     python3 tools/manual/gallery.py CSGMESH --measure   exit status 1 when a mesh has other figures than the page
 
-The page is written by hand but for what stands between these lines:
+The pages are written by hand but for what stands between these lines:
 
     <!-- figure NAME "what is to be seen" OPTIONS OF csgmesh render -->
     <!-- end figure -->
 
-NAME is a scene of scenes/papers, or scene/detail for another picture of it. In between go the picture, for a scene also one of its
+NAME is a scene beside the page, or scene/detail for another picture of it. In between go the picture, for a scene also one of its
 mesh, the command, and the mesh's figures, with the head of the SHA-256 of the scene's text and the line above.
+
+A detail may be a row of pictures: each `--each "TITLE: OPTIONS"` adds one, with these options after the others.
 """
+import glob
 import hashlib
 import json
 import os
@@ -25,8 +28,8 @@ import sys
 import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-SCENES = os.path.join(ROOT, "scenes", "papers")
-PAGE = os.path.join(SCENES, "README.md")
+PAGES = [os.path.join(ROOT, "scenes", "papers", "README.md"),
+         *sorted(glob.glob(os.path.join(ROOT, "docs", "papers", "*.md")))]
 FOLDER = os.path.join(ROOT, "docs", "pictures", "papers")
 OTHERS = {"nguyen.png"}  # of docs/evaluations.md
 BLOCK = re.compile(r'^<!-- figure (\S+) "([^"]*)" ?(.*?) ?-->\n(.*?)^<!-- end figure -->\n', re.M | re.S)
@@ -35,20 +38,46 @@ COARSE = 72  # cells along a mesh whose triangles are to be seen
 
 
 class Figure:
-    """One block of the page."""
+    """One block of a page."""
 
-    def __init__(self, match):
+    def __init__(self, match, page):
         self.name, self.alt, options, self.body = match.groups()
         self.scene, _, self.detail = self.name.partition("/")
-        self.path = os.path.join(SCENES, self.scene + ".txt")
-        self.options = shlex.split(options)
+        self.folder = os.path.dirname(page)
+        self.path = os.path.join(self.folder, self.scene + ".txt")
+        self.options, self.row = self.read_options(shlex.split(options))
         self.head = match.group(0).split("\n", 1)[0] + "\n"
 
+    @staticmethod
+    def read_options(words):
+        """What all pictures have, and of each picture of a row its title and what it has besides."""
+        common, row = [], []
+        words = iter(words)
+        for word in words:
+            if word == "--each":
+                title, _, rest = next(words).partition(": ")
+                row.append((title, shlex.split(rest)))
+            else:
+                common.append(word)
+        return common, row
+
     def pictures(self):
-        """The traced picture and, for a scene, that of its mesh."""
+        """The traced picture and, for a scene, that of its mesh; or those of a row."""
+        if self.row:
+            return [f"{self.scene}-{self.detail}-{i + 1}.png" for i in range(len(self.row))]
         if self.detail:
             return [f"{self.scene}-{self.detail}.png"]
         return [f"{self.scene}.png", f"{self.scene}-mesh.png"]
+
+    def drawn(self):
+        """The pictures that are traced from the field, each with its options."""
+        if self.row:
+            return [(name, [*self.options, *own]) for name, (_, own) in zip(self.pictures(), self.row)]
+        return [(self.pictures()[0], self.options)]
+
+    def place(self, path):
+        """A path of the repository as the page names it."""
+        return os.path.relpath(os.path.join(ROOT, path), self.folder).replace(os.sep, "/")
 
     def text(self):
         with open(self.path, encoding="utf-8") as file:
@@ -98,24 +127,38 @@ def draw_mesh(program, figure, out):
         run(program, "render", mesh, "-o", out, "--wireframe", "-q", *options)
 
 
+def command_of(figure, name, options):
+    return " ".join(shlex.quote(word) for word in
+                    ["csgmesh", "render", os.path.relpath(figure.path, ROOT), "-o", name, *options])
+
+
 def body_of(program, figure):
-    command = " ".join(shlex.quote(word) for word in
-                       ["csgmesh", "render", f"scenes/papers/{figure.scene}.txt", "-o", figure.pictures()[0],
-                        *figure.options])
-    links = [f"![{figure.alt}](../../docs/pictures/papers/{name})" for name in figure.pictures()]
+    names = figure.pictures()
+    links = [f"![{figure.alt}]({figure.place('docs/pictures/papers/' + name)})" for name in names]
     lines = []
-    if figure.detail:
-        lines += [links[0], "", f"`{command}`"]
+    if figure.row:
+        titles = [title for title, _ in figure.row]
+        links = [link.replace("![", f"![{title}: ", 1) for title, link in zip(titles, links)]
+        lines += ["| " + " | ".join(titles) + " |", "|" + " --- |" * len(titles), "| " + " | ".join(links) + " |", "",
+                  "The first: `" + command_of(figure, *figure.drawn()[0]) + "`"]
+    elif figure.detail:
+        lines += [links[0], "", f"`{command_of(figure, *figure.drawn()[0])}`"]
     else:
         mesh_link = links[1].replace("![", "![The mesh, coarse: ", 1)
         lines += [f"| [{figure.scene}.txt]({figure.scene}.txt) | its mesh, coarse |", "| --- | --- |",
-                  f"| {links[0]} | {mesh_link} |", "", f"`{command}`", "", measures(program, figure)]
+                  f"| {links[0]} | {mesh_link} |", "", f"`{command_of(figure, *figure.drawn()[0])}`", "",
+                  measures(program, figure)]
     return "\n".join(lines + ["", f"<!-- made of {figure.state()} -->"]) + "\n"
 
 
+def draw(program, figure, folder):
+    """Traces the figure's pictures into a folder."""
+    for name, options in figure.drawn():
+        run(program, "render", figure.path, "-o", os.path.join(folder, name), "-q", *options)
+
+
 def make(program, figure):
-    out = os.path.join(FOLDER, figure.pictures()[0])
-    run(program, "render", figure.path, "-o", out, "-q", *figure.options)
+    draw(program, figure, FOLDER)
     if not figure.detail:
         draw_mesh(program, figure, os.path.join(FOLDER, figure.pictures()[1]))
     print(f"{figure.name}: " + ", ".join(f"{os.path.getsize(os.path.join(FOLDER, name)) / 1000:.0f} kB"
@@ -123,19 +166,31 @@ def make(program, figure):
     return figure.head + body_of(program, figure) + "<!-- end figure -->\n"
 
 
+def figures_of(page, text):
+    return [Figure(match, page) for match in BLOCK.finditer(text)]
+
+
+def all_figures():
+    """The figures of all pages as they stand."""
+    figures = []
+    for page in PAGES:
+        with open(page, encoding="utf-8") as file:
+            figures += figures_of(page, file.read())
+    return figures
+
+
 def faults_of(figures):
     """What does not agree, as lines."""
-    scenes = {name[:-4] for name in os.listdir(SCENES) if name.endswith(".txt")}
-    shown = {figure.scene for figure in figures if not figure.detail}
-    for name in sorted(scenes - shown):
-        yield f"{name}.txt is not in scenes/papers/README.md"
+    scenes = {path for page in PAGES for path in glob.glob(os.path.join(os.path.dirname(page), "*.txt"))}
+    for path in sorted(scenes - {figure.path for figure in figures}):
+        yield f"{os.path.relpath(path, ROOT)} is on no page"
     have = set(os.listdir(FOLDER))
     wanted = {name for figure in figures for name in figure.pictures()}
     for name in sorted(have - wanted - OTHERS):
         yield f"docs/pictures/papers/{name} is left over"
     for figure in figures:
-        if figure.scene not in scenes:
-            yield f"{figure.scene}.txt does not exist"
+        if figure.path not in scenes:
+            yield f"{os.path.relpath(figure.path, ROOT)} does not exist"
         elif not figure.is_made():
             yield f"{figure.name}: the page is older than the scene or its options"
         for name in figure.pictures():
@@ -160,28 +215,31 @@ def report(faults):
     return 1 if faults else 0
 
 
+def renew(program, page, everything):
+    """Makes the figures of a page that are out of date."""
+    def renewed(match):
+        figure = Figure(match, page)
+        here = all(os.path.exists(os.path.join(FOLDER, name)) for name in figure.pictures())
+        return match.group(0) if figure.is_made() and here and not everything else make(program, figure)
+
+    with open(page, encoding="utf-8") as file:
+        new = BLOCK.sub(renewed, file.read())
+    with open(page, "w", encoding="utf-8") as file:
+        file.write(new)
+
+
 def main():
-    with open(PAGE, encoding="utf-8") as file:
-        old = file.read()
-    figures = [Figure(match) for match in BLOCK.finditer(old)]
     options = [word for word in sys.argv[1:] if word.startswith("--")]
     programs = [word for word in sys.argv[1:] if not word.startswith("--")]
     if "--check" in options:
-        return report(faults_of(figures))
+        return report(faults_of(all_figures()))
     program = os.path.abspath(programs[0])
     if "--measure" in options:
-        return report(measure_all(program, figures))
+        return report(measure_all(program, all_figures()))
     os.makedirs(FOLDER, exist_ok=True)
-
-    def renew(match):
-        figure = Figure(match)
-        here = all(os.path.exists(os.path.join(FOLDER, name)) for name in figure.pictures())
-        return match.group(0) if figure.is_made() and here and "--all" not in options else make(program, figure)
-
-    new = BLOCK.sub(renew, old)
-    with open(PAGE, "w", encoding="utf-8") as file:
-        file.write(new)
-    figures = [Figure(match) for match in BLOCK.finditer(new)]
+    for page in PAGES:
+        renew(program, page, "--all" in options)
+    figures = all_figures()
     for name in set(os.listdir(FOLDER)) - {name for f in figures for name in f.pictures()} - OTHERS:
         os.remove(os.path.join(FOLDER, name))
     return report(faults_of(figures))

@@ -46,7 +46,11 @@ static csg_formula_id convert(csg_formula_builder *builder, const csg_formula_st
 {
     builder->most = 4 * (size_t)CSG_LONGEST_FORMULA;
     for (uint32_t i = 0; i < count; i++) {
-        ids[i] = in_radians(builder, &steps[i], i ? ids[steps[i].a] : 0, i ? ids[steps[i].b] : 0);
+        const csg_formula_step *step = &steps[i];
+        if (step->op != CSG_FORMULA_CONSTANT && step->op <= CSG_FORMULA_Z)
+            ids[i] = csg_formula_variable(builder, csg_formula_variable_of(step));
+        else
+            ids[i] = in_radians(builder, step, i ? ids[step->a] : 0, i ? ids[step->b] : 0);
         if (ids[i] == CSG_FORMULA_NONE)
             return CSG_FORMULA_NONE;
     }
@@ -99,8 +103,10 @@ static void count_readers(slots *s, const csg_formula_step *steps, uint32_t coun
     memset(s->readers, 0, count * sizeof *s->readers);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t arity = csg_formula_op_arity(steps[i].op);
-        s->readers[steps[i].a] += arity > 0;
-        s->readers[steps[i].b] += arity > 1;
+        if (arity > 0)
+            s->readers[steps[i].a]++;
+        if (arity > 1)
+            s->readers[steps[i].b]++;
     }
 }
 
@@ -110,12 +116,12 @@ static size_t share_slots(slots *s, const csg_formula_step *steps, uint32_t coun
 {
     size_t written = 0;
     count_readers(s, steps, count);
-    s->used = AXES;
+    s->used = csg_formula_variables(steps, count);
     for (uint32_t i = 0; i < count; i++) {
         if (steps[i].op > CSG_FORMULA_Z)
             out[written++] = write_step(s, steps, i);
         else if (steps[i].op != CSG_FORMULA_CONSTANT)
-            s->of[i] = (uint16_t)(steps[i].op - CSG_FORMULA_X);
+            s->of[i] = (uint16_t)csg_formula_variable_of(&steps[i]);
     }
     return written;
 }

@@ -78,6 +78,24 @@ static void place_points(const csg_tape *tape, const csg_tape_node *node,
                         count);
 }
 
+/* The scale that the operands' values come with. */
+static float operand_scale(const csg_tape *tape, const csg_tape_node *node)
+{
+    return tape->parameters[node->parameters + CSG_LEAF_FRAME];
+}
+
+static void place_operands(const csg_tape *tape, const csg_tape_node *node, const float *operands,
+                           size_t operand_stride, float *slots, size_t stride, size_t count)
+{
+    const float scale = operand_scale(tape, node);
+    for (uint32_t k = 0; k < node->arity; k++) {
+        const float *restrict in = operands + k * operand_stride;
+        float *restrict out = slots + k * stride;
+        for (size_t i = 0; i < count; i++)
+            out[i] = scale * in[i] + 0.0f;
+    }
+}
+
 /* Keeps to numbers: NaN is far outside. */
 static inline float kept(float v)
 {
@@ -120,24 +138,44 @@ static void step_values(const csg_tape_step *step, const float *restrict a, cons
     }
 }
 
+static void run_values(const csg_tape *tape, const csg_tape_formula *formula, float sigma,
+                       float *slots, size_t stride, size_t count, float *restrict out)
+{
+    const csg_tape_step *steps = tape->steps + formula->first;
+    for (uint32_t s = 0; s < formula->count; s++)
+        step_values(&steps[s], slots + steps[s].a * stride, slots + steps[s].b * stride,
+                    slots + steps[s].out * stride, count);
+    const float *restrict result = slots + formula->result * stride;
+    for (size_t i = 0; i < count; i++)
+        out[i] = sigma * kept(result[i]);
+}
+
 static void values(const csg_tape *tape, const csg_tape_node *node, const float *x, const float *y,
                    const float *z, size_t count, float *restrict out)
 {
     _Alignas(64) float slots[VALUE_FLOATS];
     const csg_tape_formula *formula = formula_of(tape, node);
-    const csg_tape_step *steps = tape->steps + formula->first;
     const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
     size_t stride = chunk_size(VALUE_FLOATS, formula->slots);
     for (size_t first = 0; first < count; first += stride) {
         size_t n = count - first < stride ? count - first : stride;
         const float *const p[3] = {x + first, y + first, z + first};
         place_points(tape, node, formula, p, slots, stride, n);
-        for (uint32_t s = 0; s < formula->count; s++)
-            step_values(&steps[s], slots + steps[s].a * stride, slots + steps[s].b * stride,
-                        slots + steps[s].out * stride, n);
-        const float *restrict result = slots + formula->result * stride;
-        for (size_t i = 0; i < n; i++)
-            out[first + i] = sigma * kept(result[i]);
+        run_values(tape, formula, sigma, slots, stride, n, out + first);
+    }
+}
+
+static void combined(const csg_tape *tape, const csg_tape_node *node, const float *operands,
+                     size_t operand_stride, size_t count, float *restrict out)
+{
+    _Alignas(64) float slots[VALUE_FLOATS];
+    const csg_tape_formula *formula = formula_of(tape, node);
+    const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
+    size_t stride = chunk_size(VALUE_FLOATS, formula->slots);
+    for (size_t first = 0; first < count; first += stride) {
+        size_t n = count - first < stride ? count - first : stride;
+        place_operands(tape, node, operands + first, operand_stride, slots, stride, n);
+        run_values(tape, formula, sigma, slots, stride, n, out + first);
     }
 }
 
@@ -286,6 +324,40 @@ static void gradients(const csg_tape *tape, const csg_tape_node *node, const flo
     }
 }
 
+static void partials(const csg_tape *tape, const csg_tape_node *node, const float *operands,
+                     size_t operand_stride, size_t count, uint32_t group, float *out,
+                     float *const partial[3])
+{
+    _Alignas(64) float slots[GRADIENT_FLOATS];
+    float *work = slots + GRADIENT_FLOATS - 2 * CSG_BATCH;
+    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_step *steps = tape->steps + formula->first;
+    const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
+    const float scale = operand_scale(tape, node);
+    size_t stride = chunk_size(32768, (size_t)formula->slots * GRADIENT_ARRAYS);
+    for (size_t first = 0; first < count; first += stride) {
+        size_t n = count - first < stride ? count - first : stride;
+        place_operands(tape, node, operands + first, operand_stride, slots,
+                       GRADIENT_ARRAYS * stride, n);
+        for (uint32_t k = 0; k < node->arity; k++)
+            for (uint32_t c = 1; c < GRADIENT_ARRAYS; c++) {
+                float *restrict along = part(slots, stride, k, (int)c);
+                for (size_t i = 0; i < n; i++)
+                    along[i] = k == 3 * group + c - 1 ? 1.0f : 0.0f;
+            }
+        for (uint32_t s = 0; s < formula->count; s++)
+            step_gradients(&steps[s], slots, stride, work, n);
+        const float *restrict result = part(slots, stride, formula->result, 0);
+        for (size_t i = 0; i < n; i++)
+            out[first + i] = sigma * kept(result[i]);
+        for (int c = 0; c < 3; c++) {
+            const float *restrict own = part(slots, stride, formula->result, c + 1);
+            for (size_t i = 0; i < n; i++)
+                partial[c][first + i] = sigma * finite_or_zero(scale * own[i]);
+        }
+    }
+}
+
 /* ---- intervals --------------------------------------------------------------------------------
  */
 
@@ -403,22 +475,21 @@ static void intervals(const csg_tape *tape, const csg_tape_node *node, const flo
 }
 
 /* What the formula gets for a value: the frame's scale, nothing else, is applied to it. */
-static void box_intervals(const csg_tape *tape, const csg_tape_node *node,
-                          const float *const low[3], const float *const high[3], float *out_low,
-                          float *out_high)
+static void box_intervals(const csg_tape *tape, const csg_tape_node *node, const float *low,
+                          const float *high, size_t stride, float *out_low, float *out_high)
 {
     ranges slots[CSG_FORMULA_SLOTS];
     const csg_tape_formula *formula = formula_of(tape, node);
     const float *parameters = tape->parameters + node->parameters;
     const float sigma = parameters[CSG_LEAF_SIGMA], far = (float)CSG_FORMULA_FAR;
-    for (int axis = 0; axis < 3; axis++) {
-        float scale = parameters[CSG_LEAF_FRAME + 4 * axis];
-        for (int i = 0; i < RANGE_LANES; i++) {
-            float a = scale * low[axis][i % CSG_OCTANTS], b = scale * high[axis][i % CSG_OCTANTS];
-            slots[axis].low[i] = a - 0x1p-20f * absolute(a);
-            slots[axis].high[i] = b + 0x1p-20f * absolute(b);
+    const float scale = operand_scale(tape, node);
+    for (uint32_t k = 0; k < node->arity; k++)
+        for (size_t i = 0; i < RANGE_LANES; i++) {
+            float a = scale * low[k * stride + i % CSG_OCTANTS];
+            float b = scale * high[k * stride + i % CSG_OCTANTS];
+            slots[k].low[i] = a - 0x1p-20f * absolute(a);
+            slots[k].high[i] = b + 0x1p-20f * absolute(b);
         }
-    }
     run_ranges(tape, formula, slots);
     const ranges *result = &slots[formula->result];
     for (int i = 0; i < CSG_OCTANTS; i++) {
@@ -432,6 +503,8 @@ static void box_intervals(const csg_tape *tape, const csg_tape_node *node,
 
 const csg_formula_kernel CSG_THIS_FORMULA_KERNEL = {
     .box_intervals = box_intervals,
+    .combined = combined,
+    .partials = partials,
     .values = values,
     .gradients = gradients,
     .intervals = intervals,

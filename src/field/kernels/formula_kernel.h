@@ -18,10 +18,16 @@ typedef struct csg_formula_kernel {
      * Lipschitz constant, every rounding included. */
     void (*intervals)(const csg_tape *tape, const csg_tape_node *node, const float *cx,
                       const float *cy, const float *cz, float radius, float *low, float *high);
-    /* Bounds over eight boxes low[i] .. high[i]; node: a CSG_OP_COMBINE. */
-    void (*box_intervals)(const csg_tape *tape, const csg_tape_node *node,
-                          const float *const low[3], const float *const high[3], float *out_low,
-                          float *out_high);
+    /* The others: of a CSG_OP_COMBINE, whose operands are arrays `stride` apart. */
+    void (*combined)(const csg_tape *tape, const csg_tape_node *node, const float *operands,
+                     size_t stride, size_t count, float *out);
+    /* Partial derivatives by operands 3 group, 3 group + 1 and 3 group + 2. */
+    void (*partials)(const csg_tape *tape, const csg_tape_node *node, const float *operands,
+                     size_t stride, size_t count, uint32_t group, float *out,
+                     float *const partial[3]);
+    /* Bounds over eight boxes. */
+    void (*box_intervals)(const csg_tape *tape, const csg_tape_node *node, const float *low,
+                          const float *high, size_t stride, float *out_low, float *out_high);
 } csg_formula_kernel;
 
 #ifdef CSG_KERNEL

@@ -56,19 +56,11 @@ static float combine_raise(const csg_tape *tape, const csg_tape_node *node)
     return tape->parameters[node->parameters + CSG_LEAF_RAISE];
 }
 
-/* Operands that a formula of fewer does not read are the first one. */
-static float *operand(kernel_slots s, size_t first, uint32_t arity, uint32_t k)
-{
-    return slot(s, k < arity ? first + k : first);
-}
-
 static void combine_values(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                            size_t first, size_t count, float *work)
 {
     const float raise = combine_raise(tape, node);
-    const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
-    CSG_THIS_FORMULA_KERNEL.values(tape, node, a, b, operand(s, first, node->arity, 2), count,
-                                   work);
+    CSG_THIS_FORMULA_KERNEL.combined(tape, node, slot(s, first), s.stride, count, work);
     float *out = slot(s, first);
     for (size_t i = 0; i < count; i++)
         out[i] = work[i] + raise;
@@ -212,30 +204,55 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
 }
 
 /* Gradients by the chain rule; colours in the proportions of the partial derivatives' sizes. */
+/* A channel's share of up to three operands, which are number `from` and later ones. */
+static void mix_channel(kernel_slots s, uint32_t depth, size_t first, uint32_t from, uint32_t arity,
+                        int c, float *const partial[3], size_t count)
+{
+    float *out = channel(s, depth, first, c);
+    for (uint32_t k = from; k < arity && k < from + 3; k++) {
+        const float *in = channel(s, depth, first + k, c), *by = partial[k - from];
+        for (size_t i = 0; i < count; i++)
+            out[i] = k ? out[i] + by[i] * in[i] : by[i] * in[i];
+    }
+}
+
+/* Colours mix in the proportions of the partial derivatives; where all are 0 they are the first's.
+ */
+static void take_shares(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
+                        size_t first, uint32_t from, size_t count, float *work,
+                        float *const partial[3])
+{
+    float *sum = work + 4 * s.stride;
+    uint32_t here = node->arity - from < 3 ? node->arity - from : 3;
+    if (from == 0)
+        for (uint32_t at = 0; at < node->arity; at += 3) {
+            if (at > 0) /* and the first ones again, below */
+                CSG_THIS_FORMULA_KERNEL.partials(tape, node, slot(s, first), s.stride, count,
+                                                 at / 3, work, partial);
+            for (uint32_t k = 0; k < 3 && at + k < node->arity; k++)
+                for (size_t i = 0; i < count; i++)
+                    sum[i] = (at + k ? sum[i] : 0) + absolute(partial[k][i]);
+        }
+    if (from == 0 && node->arity > 3)
+        CSG_THIS_FORMULA_KERNEL.partials(tape, node, slot(s, first), s.stride, count, 0, work,
+                                         partial);
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < here; k++)
+            partial[k][i] = sum[i] > 0 ? absolute(partial[k][i]) / sum[i] : from + k == 0;
+}
+
 static void combine_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                           uint32_t depth, size_t first, plan wanted, size_t count, float *work)
 {
     const float raise = combine_raise(tape, node);
     float *partial[3] = {work + s.stride, work + 2 * s.stride, work + 3 * s.stride};
-    const float *a = operand(s, first, node->arity, 0), *b = operand(s, first, node->arity, 1);
-    CSG_THIS_FORMULA_KERNEL.gradients(tape, node, a, b, operand(s, first, node->arity, 2), count,
-                                      work, partial[0], partial[1], partial[2]);
-    for (int c = 0; c < channels_of(wanted); c++) {
-        if (c == wanted.gradients)
-            for (size_t i = 0; i < count; i++) {
-                float sum = 0;
-                for (uint32_t k = 0; k < node->arity; k++)
-                    sum += absolute(partial[k][i]);
-                for (uint32_t k = 0; k < node->arity; k++)
-                    partial[k][i] = sum > 0 ? absolute(partial[k][i]) / sum : k == 0;
-            }
-        float *out = channel(s, depth, first, c);
-        for (size_t i = 0; i < count; i++)
-            out[i] = partial[0][i] * out[i];
-        for (uint32_t k = 1; k < node->arity; k++) {
-            const float *in = channel(s, depth, first + k, c);
-            for (size_t i = 0; i < count; i++)
-                out[i] += partial[k][i] * in[i];
+    for (uint32_t from = 0; from < node->arity; from += 3) {
+        CSG_THIS_FORMULA_KERNEL.partials(tape, node, slot(s, first), s.stride, count, from / 3,
+                                         work, partial);
+        for (int c = 0; c < channels_of(wanted); c++) {
+            if (c == wanted.gradients)
+                take_shares(tape, node, s, first, from, count, work, partial);
+            mix_channel(s, depth, first, from, node->arity, c, partial, count);
         }
     }
     float *out = slot(s, first);
@@ -567,13 +584,9 @@ static void combine_intervals(const csg_tape *tape, const csg_tape_node *node, k
                               kernel_slots highs, size_t first)
 {
     const float raise = combine_raise(tape, node);
-    const float *low[3], *high[3];
-    for (uint32_t k = 0; k < 3; k++) {
-        low[k] = operand(lows, first, node->arity, k);
-        high[k] = operand(highs, first, node->arity, k);
-    }
     float *out_low = slot(lows, first), *out_high = slot(highs, first);
-    CSG_THIS_FORMULA_KERNEL.box_intervals(tape, node, low, high, out_low, out_high);
+    CSG_THIS_FORMULA_KERNEL.box_intervals(tape, node, slot(lows, first), slot(highs, first),
+                                          lows.stride, out_low, out_high);
     for (int i = 0; i < CSG_OCTANTS; i++) {
         out_low[i] += raise;
         out_high[i] += raise;

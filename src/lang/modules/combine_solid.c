@@ -59,32 +59,42 @@ static csg_node_id combined(csg_module_call *call, const csg_node_id *operands, 
     return csg_shape_done(call, csg_build_cut(&e->builder, node, box, where));
 }
 
-/* As many parameters as operands, and others only with values of their own. */
+/* As many parameters as operands, or one that is a list of them, and others only with values of
+ * their own. */
 static bool takes(const csg_module_call *call, uint32_t count)
 {
-    if (!csg_argument_is_function(call, FUNCTION, count))
+    if (!csg_argument_is_function(call, FUNCTION, 1))
         return false;
     const csg_arguments *parameters =
         &call->values[FUNCTION].as.function->literal->as.call.arguments;
+    uint32_t needed = 0;
+    for (uint32_t i = 0; i < parameters->count; i++)
+        needed += !parameters->items[i].value;
+    if (needed == 1 && !parameters->items[0].value)
+        return true;
     for (uint32_t i = count; i < parameters->count; i++)
         if (!parameters->items[i].value)
             return false;
-    return true;
+    return parameters->count >= count;
 }
 
 csg_node_id csg_module_combine(csg_module_call *call)
 {
+    static const char *const examples[] = {"1 number, as function (a) a + 1",
+                                           "2 numbers, as function (a, b) max(a, b)",
+                                           "3 numbers, as function (a, b, c) max(a, b, c)"};
     csg_node_id operands[CSG_COMBINE_MOST];
     uint32_t count = take_operands(call, operands);
-    if (count && !takes(call, count))
-        csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE,
-                           "it needs a function of %u number%s, as function (%s) %s", count,
-                           count == 1 ? "" : "s",
-                           count == 1   ? "a"
-                           : count == 2 ? "a, b"
-                                        : "a, b, c",
-                           count == 1   ? "a + 1"
-                           : count == 2 ? "max(a, b)"
-                                        : "max(a, b, c)");
+    if (count && !takes(call, count)) {
+        if (count <= 3)
+            csg_argument_error(call, FUNCTION, CSG_DIAG_BAD_TYPE, "it needs a function of %s",
+                               examples[count - 1]);
+        else
+            csg_argument_error(
+                call, FUNCTION, CSG_DIAG_BAD_TYPE,
+                "it needs a function of %u numbers, or of a list of them, as function "
+                "(f) max(f)",
+                count);
+    }
     return count && !call->failed ? combined(call, operands, count) : csg_shape_empty(call);
 }

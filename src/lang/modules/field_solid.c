@@ -9,12 +9,13 @@
 #include "lang/modules/formula_call.h"
 #include "scene/formula/formula.h"
 
-static csg_value point_of_terms(csg_eval *e)
+/* A list of the first variables: a point's three coordinates, or the fields of operands. */
+static csg_value list_of_terms(csg_eval *e, uint32_t count)
 {
-    csg_vector *point = csg_vector_create(&e->heap, 3);
+    csg_vector *point = csg_vector_create(&e->heap, count);
     bool made = point != NULL;
-    for (uint32_t axis = 0; axis < 3 && made; axis++) {
-        csg_formula_id id = csg_formula_apply(e->formula, CSG_FORMULA_X + axis, 0, 0);
+    for (uint32_t axis = 0; axis < count && made; axis++) {
+        csg_formula_id id = csg_formula_variable(e->formula, axis);
         point->items[axis] = (csg_value){.kind = CSG_VALUE_TERM, .as.term = id};
         made = id != CSG_FORMULA_NONE;
     }
@@ -25,15 +26,25 @@ static csg_value point_of_terms(csg_eval *e)
     return csg_value_object(point, CSG_VALUE_VECTOR);
 }
 
-static csg_value coordinate(csg_eval *e, uint32_t axis)
+static csg_value variable(csg_eval *e, uint32_t number)
 {
-    csg_formula_id id = csg_formula_apply(e->formula, CSG_FORMULA_X + axis, 0, 0);
+    csg_formula_id id = csg_formula_variable(e->formula, number);
     if (id == CSG_FORMULA_NONE)
         csg_eval_no_memory(e);
     return (csg_value){.kind = CSG_VALUE_TERM, .as.term = id};
 }
 
-/* The function's value at the point of terms, or of as many terms as there are operands. */
+/* How many parameters have no value of their own. */
+static uint32_t required(const csg_arguments *parameters)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < parameters->count; i++)
+        count += !parameters->items[i].value;
+    return count;
+}
+
+/* The function's value at the point of terms, or of as many terms as there are operands: each a
+ * parameter, or several in one list. */
 static csg_value call_function(csg_module_call *call, const csg_function *function,
                                uint32_t operands)
 {
@@ -46,11 +57,12 @@ static csg_value call_function(csg_module_call *call, const csg_function *functi
         return result;
     }
     frame->names = parameters->items;
-    for (uint32_t i = 0; i < operands && i < parameters->count; i++)
-        frame->values[i] = coordinate(e, i);
-    if (!operands)
-        frame->values[0] = point_of_terms(e);
-    for (uint32_t i = operands ? operands : 1; i < parameters->count && !e->stop; i++)
+    bool listed = !operands || (operands > 1 && required(parameters) == 1);
+    for (uint32_t i = 0; !listed && i < operands && i < parameters->count; i++)
+        frame->values[i] = variable(e, i);
+    if (listed)
+        frame->values[0] = list_of_terms(e, operands ? operands : 3);
+    for (uint32_t i = listed ? 1 : operands; i < parameters->count && !e->stop; i++)
         frame->values[i] = parameters->items[i].value
                                ? csg_evaluate(e, parameters->items[i].value, function->frame)
                                : csg_value_undef();

@@ -96,6 +96,22 @@ csg_formula_id csg_formula_constant(csg_formula_builder *builder, double value)
     return append(builder, (csg_formula_step){.op = CSG_FORMULA_CONSTANT, .constant = value});
 }
 
+csg_formula_id csg_formula_variable(csg_formula_builder *builder, uint32_t number)
+{
+    return append(builder,
+                  (csg_formula_step){.op = (uint8_t)(CSG_FORMULA_X + number % 3), .a = number / 3});
+}
+
+uint32_t csg_formula_variables(const csg_formula_step *steps, uint32_t count)
+{
+    uint32_t most = 3;
+    for (uint32_t i = 0; i < count; i++)
+        if (steps[i].op != CSG_FORMULA_CONSTANT && steps[i].op <= CSG_FORMULA_Z &&
+            csg_formula_variable_of(&steps[i]) >= most)
+            most = csg_formula_variable_of(&steps[i]) + 1;
+    return most;
+}
+
 /* ---- simplification -------------------------------------------------------------------------- */
 
 static bool is_constant(const csg_formula_builder *builder, csg_formula_id id)
@@ -239,7 +255,8 @@ static uint32_t collect(const csg_formula_builder *builder, csg_formula_id resul
         } else if (arity > 1 && !order[step.b]) {
             waiting[top++] = step.b;
         } else {
-            step.a = arity > 0 ? order[step.a] - 1 : 0;
+            if (arity > 0)
+                step.a = order[step.a] - 1;
             step.b = arity > 1 ? order[step.b] - 1 : 0;
             out[count] = step;
             order[id] = ++count;
@@ -271,10 +288,12 @@ bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32
     memset(readers, 0, count * sizeof *readers);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t arity = csg_formula_op_arity(steps[i].op);
-        readers[steps[i].a] += arity > 0;
-        readers[steps[i].b] += arity > 1;
+        if (arity > 0)
+            readers[steps[i].a]++;
+        if (arity > 1)
+            readers[steps[i].b]++;
     }
-    uint32_t live = 3, most = 3; /* the coordinates */
+    uint32_t live = csg_formula_variables(steps, count), most = live;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t arity = csg_formula_op_arity(steps[i].op);
         if (!arity)

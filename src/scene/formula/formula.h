@@ -25,6 +25,12 @@ static inline bool csg_formula_op_is_unary(csg_formula_op op)
 {
     return op > CSG_FORMULA_Z && op < CSG_FORMULA_ADD;
 }
+/* Which variable an X, Y or Z is: 0, 1, 2 are the coordinates of a point, or the first three of
+ * the values that a formula combines, which may be more. */
+static inline uint32_t csg_formula_variable_of(const csg_formula_step *step)
+{
+    return (uint32_t)step->op - CSG_FORMULA_X + 3 * step->a;
+}
 /* "sin"; static storage. */
 const char *csg_formula_op_name(csg_formula_op op);
 uint32_t csg_formula_op_arity(csg_formula_op op);
@@ -46,11 +52,15 @@ void csg_formula_end(csg_formula_builder *builder);
 csg_formula_id csg_formula_constant(csg_formula_builder *builder, double value);
 csg_formula_id csg_formula_apply(csg_formula_builder *builder, csg_formula_op op, csg_formula_id a,
                                  csg_formula_id b);
+/* The variable of this number. */
+csg_formula_id csg_formula_variable(csg_formula_builder *builder, uint32_t number);
 /* The steps that the result needs, operands close before their users, into `out` (room for
  * builder->count); returns how many, 0 when out of memory. */
 uint32_t csg_formula_collect(const csg_formula_builder *builder, csg_formula_id result,
                              csg_formula_step *out);
 
+/* The number of the last variable that is read and 1, at least 3. */
+uint32_t csg_formula_variables(const csg_formula_step *steps, uint32_t count);
 /* Values that an evaluation in this order has to keep at once, constants not counted. */
 bool csg_formula_width(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                        uint32_t *out);
@@ -63,6 +73,12 @@ double csg_formula_value(csg_formula_op op, double a, double b);
 /* Value and gradient at p (zero at critical points); work: room for formula->count. */
 csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_formula *formula,
                                       csg_vec3 p, csg_formula_dual *work);
+
+/* The same of csg_formula_variables values, in all of their space: the gradient is by variables
+ * 3 group, 3 group + 1, 3 group + 2. */
+csg_formula_dual csg_formula_evaluate_group(const csg_formula_step *steps,
+                                            const csg_formula *formula, const double *values,
+                                            uint32_t group, csg_formula_dual *work);
 
 /* A Lipschitz constant on the box by interval arithmetic, as tight as some hundred parts of the
  * box make it; INFINITY where that finds none. NAN: out of memory. */
@@ -98,9 +114,9 @@ bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint3
  * where nothing is known. False: out of memory. */
 bool csg_formula_values(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                         csg_box box, double values[2]);
-/* +1, -1 or 0 for each of x, y, z: the formula never falls, never rises, or neither is known (also
- * without memory). */
+/* +1, -1 or 0 for each of so many variables: the formula never falls, never rises, or neither is
+ * known (also without memory). */
 void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                        int trends[3]);
+                        uint32_t variables, int *trends);
 
 #endif

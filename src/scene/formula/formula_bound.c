@@ -6,6 +6,7 @@
  * sum of squares is smooth enough at 0, and a minimum has the gradient of one of its operands.
  */
 #include <float.h>
+#include <string.h>
 
 #include "base/elementary.h"
 
@@ -468,14 +469,30 @@ static bound root_of_squares(const bound *bounds, range under, const uint32_t *s
 /* ---- boxes -------------------------------------------------------------------------------------
  */
 
-/* Derivatives along three directions instead of along x, y and z, which makes lengths mean nothing.
+/* ---- runs -------------------------------------------------------------------------------------
  */
-typedef double directions[3][3];
 
-static double bound_along(const csg_formula_step *steps, uint32_t count, csg_box box,
-                          const directions along, bound *bounds)
+/* What the variables are, and along which three directions their derivatives are taken; along
+ * others than x, y and z lengths mean nothing. */
+typedef struct space {
+    const range *axes;      /* of each variable; NULL: all numbers */
+    const double *along[3]; /* a number per variable; NULL: the unit directions of this group */
+    uint32_t group;
+} space;
+
+static bound variable_in(const space *in, uint32_t number)
 {
-    const range axes[3] = {{box.min.x, box.max.x}, {box.min.y, box.max.y}, {box.min.z, box.max.z}};
+    const range all = {-INFINITY, INFINITY};
+    bound out = {.value = in->axes ? in->axes[number] : all, .length = 1};
+    for (uint32_t k = 0; k < 3; k++)
+        out.gradient[k] =
+            exactly(in->along[k] ? in->along[k][number] : number == 3 * in->group + k);
+    return out;
+}
+
+static double bound_in(const csg_formula_step *steps, uint32_t count, const space *in,
+                       bound *bounds)
+{
     uint32_t squares[MOST_SQUARES];
     for (uint32_t i = 0; i < count; i++) {
         const csg_formula_step *step = &steps[i];
@@ -483,10 +500,7 @@ static double bound_along(const csg_formula_step *steps, uint32_t count, csg_box
         if (step->op == CSG_FORMULA_CONSTANT) {
             bounds[i] = (bound){.value = exactly(step->constant)};
         } else if (step->op <= CSG_FORMULA_Z) {
-            int axis = step->op - CSG_FORMULA_X;
-            bounds[i] = (bound){.value = axes[axis], .length = 1};
-            for (int k = 0; k < 3; k++)
-                bounds[i].gradient[k] = exactly(along[k][axis]);
+            bounds[i] = variable_in(in, csg_formula_variable_of(step));
         } else if (square_count) {
             bounds[i] = root_of_squares(bounds, bounds[step->a].value, squares, square_count);
         } else if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX) {
@@ -503,51 +517,96 @@ static double bound_along(const csg_formula_step *steps, uint32_t count, csg_box
 double csg_formula_bound_on_box(const csg_formula_step *steps, uint32_t count, csg_box box,
                                 csg_formula_bound *bounds)
 {
-    static const directions axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    return bound_along(steps, count, box, axes, bounds);
+    const range axes[3] = {{box.min.x, box.max.x}, {box.min.y, box.max.y}, {box.min.z, box.max.z}};
+    return bound_in(steps, count, &(space){.axes = axes}, bounds);
 }
 
-/* The last step's bound on a box. False: out of memory. */
-static bool bound_of_result(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                            csg_box box, bound *out)
+/* ---- of as many variables as there are --------------------------------------------------------
+ */
+
+/* The derivative by each variable anywhere, unknown where nothing is. */
+static void slopes_of_all(const csg_formula_step *steps, uint32_t count, uint32_t variables,
+                          bound *bounds, range *slopes)
 {
-    bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
-    if (!bounds)
-        return false;
-    csg_formula_bound_on_box(steps, count, box, bounds);
-    *out = bounds[count - 1];
-    csg_memory_release(memory, bounds, count * sizeof *bounds);
-    return true;
+    for (uint32_t first = 0; first < variables; first += 3) {
+        bound_in(steps, count, &(space){.group = first / 3}, bounds);
+        const bound *result = &bounds[count - 1];
+        for (uint32_t k = 0; k < 3 && first + k < variables; k++)
+            slopes[first + k] = is_known(result->value) ? result->gradient[k] : unknown();
+    }
 }
 
-/* The sum of the sizes is the largest derivative along (1, +-1, +-1), and along a direction what is
- * the same for all operands, as of max(a, b), is seen to cancel. */
-double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count)
+/* Room for the rounding of 0; of the sum of sizes it is less than the last bit. */
+#define NO_SLOPE 1e-290
+
+/* The largest derivative along directions of +-1 for each variable: the signs that are known, and
+ * all that the first `open` of the others can have, three at a time; the rest count by themselves.
+ * Along a direction what is the same for all operands, as of max(a, b), is seen to cancel. */
+static double steepest_along_signs(const csg_formula_step *steps, uint32_t count,
+                                   uint32_t variables, const range *slopes, double *signs,
+                                   bound *bounds)
 {
-    static const directions signs[2] = {{{1, 1, 1}, {1, 1, -1}, {1, -1, 1}},
-                                        {{1, -1, -1}, {0, 0, 0}, {0, 0, 0}}};
-    bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
-    double most = 0;
-    if (!bounds)
-        return NAN;
-    for (int pass = 0; pass < 2; pass++) {
-        bound_along(steps, count, csg_box_all(), signs[pass], bounds);
-        for (int i = 0; i < 3; i++)
-            most = fmax(most, largest(bounds[count - 1].gradient[i]));
+    enum { MOST_OPEN = 10 };
+    uint32_t open[MOST_OPEN], open_count = 0;
+    double most = 0, rest = 0;
+    for (uint32_t v = 0; v < variables; v++) {
+        bool rises = slopes[v].low >= -NO_SLOPE, falls = slopes[v].high <= NO_SLOPE;
+        bool known = rises || falls;
+        signs[v] = falls ? -1 : 1;
+        if (known)
+            continue;
+        if (open_count < MOST_OPEN) {
+            open[open_count++] = v;
+        } else {
+            signs[v] = 0;
+            rest += largest(slopes[v]);
+        }
+    }
+    /* f and -f are as steep: where no sign is known the first stays as it is */
+    uint32_t fixed = open_count == variables && open_count > 0;
+    for (uint32_t mask = 0; mask < 1u << (open_count - fixed); mask += 3) {
+        space in = {.group = 0};
+        for (uint32_t k = 0; k < 3; k++) {
+            double *along = signs + k * variables;
+            memmove(along, signs, (k > 0) * variables * sizeof *signs);
+            for (uint32_t i = fixed; i < open_count; i++)
+                along[open[i]] = (mask + k) >> (i - fixed) & 1 ? -1 : 1;
+            in.along[k] = along;
+        }
+        bound_in(steps, count, &in, bounds);
+        for (uint32_t k = 0; k < 3; k++)
+            most = fmax(most, largest(bounds[count - 1].gradient[k]));
         if (!is_known(bounds[count - 1].value))
             most = INFINITY;
     }
-    csg_memory_release(memory, bounds, count * sizeof *bounds);
+    return most + rest;
+}
+
+double csg_formula_partials_sum(csg_memory *memory, const csg_formula_step *steps, uint32_t count)
+{
+    uint32_t variables = csg_formula_variables(steps, count);
+    size_t bytes = count * sizeof(bound) + variables * (sizeof(range) + 3 * sizeof(double));
+    bound *bounds = csg_memory_alloc(memory, bytes);
+    if (!bounds)
+        return NAN;
+    range *slopes = (range *)(bounds + count);
+    double *signs = (double *)(slopes + variables);
+    slopes_of_all(steps, count, variables, bounds, slopes);
+    double most = steepest_along_signs(steps, count, variables, slopes, signs, bounds);
+    csg_memory_release(memory, bounds, bytes);
     return isnan(most) ? INFINITY : most * (1 + 8 * DBL_EPSILON);
 }
 
 bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
                         double low, double high, double value[2], double slope[2])
 {
-    bound result;
     const csg_box box = {{low, 0, 0}, {high, 0, 0}};
-    if (!bound_of_result(memory, steps, count, box, &result))
+    bound *bounds = csg_memory_alloc(memory, count * sizeof *bounds);
+    if (!bounds)
         return false;
+    csg_formula_bound_on_box(steps, count, box, bounds);
+    const bound result = bounds[count - 1];
+    csg_memory_release(memory, bounds, count * sizeof *bounds);
     bool known = is_known(result.value), smooth = known && is_known(result.gradient[0]);
     value[0] = known ? result.value.low : -INFINITY;
     value[1] = known ? result.value.high : INFINITY;
@@ -557,13 +616,17 @@ bool csg_formula_ranges(csg_memory *memory, const csg_formula_step *steps, uint3
 }
 
 void csg_formula_trends(csg_memory *memory, const csg_formula_step *steps, uint32_t count,
-                        int trends[3])
+                        uint32_t variables, int *trends)
 {
     const double rounding = 1e-12; /* of slopes that are 0 */
-    bound result;
-    bool known = bound_of_result(memory, steps, count, csg_box_all(), &result);
-    for (int i = 0; i < 3; i++) {
-        range slope = known ? result.gradient[i] : unknown();
-        trends[i] = slope.low >= -rounding ? 1 : slope.high <= rounding ? -1 : 0;
-    }
+    size_t bytes = count * sizeof(bound) + variables * sizeof(range);
+    bound *bounds = csg_memory_alloc(memory, bytes);
+    memset(trends, 0, variables * sizeof *trends);
+    if (!bounds)
+        return;
+    range *slopes = (range *)(bounds + count);
+    slopes_of_all(steps, count, variables, bounds, slopes);
+    for (uint32_t v = 0; v < variables; v++)
+        trends[v] = slopes[v].low >= -rounding ? 1 : slopes[v].high <= rounding ? -1 : 0;
+    csg_memory_release(memory, bounds, bytes);
 }

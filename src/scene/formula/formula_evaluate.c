@@ -163,21 +163,21 @@ static double clamp(double value, double low, double high, double *moves)
     return value < low ? low : value > high ? high : value;
 }
 
-csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_formula *formula,
-                                      csg_vec3 p, csg_formula_dual *work)
+/* axes: the variables of the group, with their gradients; values: all, NULL where it is the only
+ * group. */
+static csg_formula_dual evaluate_steps(const csg_formula_step *steps, const csg_formula *formula,
+                                       const csg_formula_dual axes[3], const double *values,
+                                       uint32_t group, csg_formula_dual *work)
 {
-    csg_formula_dual axes[3] = {0};
-    csg_box box = formula->bounds;
-    axes[0].value = clamp(p.x, box.min.x, box.max.x, &axes[0].gradient.x);
-    axes[1].value = clamp(p.y, box.min.y, box.max.y, &axes[1].gradient.y);
-    axes[2].value = clamp(p.z, box.min.z, box.max.z, &axes[2].gradient.z);
     steps += formula->first;
     for (uint32_t i = 0; i < formula->count; i++) {
         const csg_formula_step *step = &steps[i];
         if (step->op == CSG_FORMULA_CONSTANT)
             work[i] = (csg_formula_dual){.value = step->constant};
-        else if (step->op <= CSG_FORMULA_Z)
+        else if (step->op <= CSG_FORMULA_Z && step->a == group)
             work[i] = axes[step->op - CSG_FORMULA_X];
+        else if (step->op <= CSG_FORMULA_Z)
+            work[i] = (csg_formula_dual){.value = values[csg_formula_variable_of(step)]};
         else
             work[i] = apply(step, work[step->a], work[step->b]);
     }
@@ -190,4 +190,26 @@ csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_f
     if (!finite)
         out.gradient = csg_vec3_make(0, 0, 0);
     return out;
+}
+
+csg_formula_dual csg_formula_evaluate(const csg_formula_step *steps, const csg_formula *formula,
+                                      csg_vec3 p, csg_formula_dual *work)
+{
+    csg_formula_dual axes[3] = {0};
+    csg_box box = formula->bounds;
+    axes[0].value = clamp(p.x, box.min.x, box.max.x, &axes[0].gradient.x);
+    axes[1].value = clamp(p.y, box.min.y, box.max.y, &axes[1].gradient.y);
+    axes[2].value = clamp(p.z, box.min.z, box.max.z, &axes[2].gradient.z);
+    return evaluate_steps(steps, formula, axes, NULL, 0, work);
+}
+
+csg_formula_dual csg_formula_evaluate_group(const csg_formula_step *steps,
+                                            const csg_formula *formula, const double *values,
+                                            uint32_t group, csg_formula_dual *work)
+{
+    csg_formula_dual axes[3] = {{0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
+    uint32_t variables = csg_formula_variables(steps + formula->first, formula->count);
+    for (uint32_t k = 0; k < 3 && 3 * group + k < variables; k++)
+        axes[k].value = values[3 * group + k];
+    return evaluate_steps(steps, formula, axes, values, group, work);
 }

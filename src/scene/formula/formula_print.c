@@ -63,13 +63,21 @@ static const char *sign_of(csg_formula_op op)
 
 static void put_operation(printer *out, uint32_t index);
 
+static void put_variable(printer *out, uint32_t number)
+{
+    char text[32];
+    if (out->words->list)
+        snprintf(text, sizeof text, "%s[%u]", out->words->list, number);
+    put_text(out, out->words->list ? text : out->words->coordinates[number]);
+}
+
 static void put_operand(printer *out, uint32_t index)
 {
     const csg_formula_step *step = &out->steps[index];
     if (step->op == CSG_FORMULA_CONSTANT) {
         csg_print_number(out->sink, out->user, step->constant);
     } else if (step->op <= CSG_FORMULA_Z) {
-        put_text(out, out->words->coordinates[step->op - CSG_FORMULA_X]);
+        put_variable(out, csg_formula_variable_of(step));
     } else if (out->named[index]) {
         put_name(out, index);
     } else {
@@ -103,8 +111,10 @@ static void choose_names(printer *out, uint32_t count, uint32_t *uses, uint32_t 
     for (uint32_t i = 0; i < count; i++) {
         const csg_formula_step *step = &out->steps[i];
         uint32_t arity = csg_formula_op_arity(step->op);
-        uses[step->a] += arity > 0;
-        uses[step->b] += arity > 1;
+        if (arity > 0)
+            uses[step->a]++;
+        if (arity > 1)
+            uses[step->b]++;
     }
     for (uint32_t i = 0; i < count; i++) {
         const csg_formula_step *step = &out->steps[i];

@@ -7,9 +7,10 @@
 #include "base/context.h"
 #include "scene/formula/step.h"
 
-/* The words for x, y and z, and for the parameters that they come from. */
+/* The words for x, y and z, and for the parameters that they come from; or the list that all
+ * variables are items of. */
 typedef struct csg_formula_words {
-    const char *parameters, *coordinates[3];
+    const char *parameters, *coordinates[3], *list;
 } csg_formula_words;
 
 /* "function (p) ..."; steps that are used again become variables. False: out of memory. */

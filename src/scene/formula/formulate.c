@@ -149,7 +149,8 @@ static void place_points(work *w)
 /* ---- values -----------------------------------------------------------------------------------
  */
 
-/* A formula of the scene at these terms; its coordinates are first taken into its bounds. */
+/* A formula of the scene at these terms: a point's, which are first taken into its bounds, or all
+ * that it combines. */
 static csg_term formula(work *w, const csg_formula *f, const csg_term *at)
 {
     csg_terms *t = w->t;
@@ -164,7 +165,7 @@ static csg_term formula(work *w, const csg_formula *f, const csg_term *at)
         if (step->op == CSG_FORMULA_CONSTANT)
             made[i] = csg_term_number(t, step->constant);
         else if (step->op <= CSG_FORMULA_Z)
-            made[i] = axes[step->op - CSG_FORMULA_X];
+            made[i] = step->a ? at[csg_formula_variable_of(step)] : axes[step->op - CSG_FORMULA_X];
         else
             made[i] = csg_term_of(t, step->op, made[step->a], made[step->b]);
     }
@@ -175,7 +176,7 @@ static csg_term combined(work *w, const csg_node *node)
 {
     const csg_formula *f = &w->scene->formulas[node->payload];
     const csg_node_id *children = csg_scene_children(w->scene, node);
-    csg_term zero = csg_term_number(w->t, 0), at[3] = {zero, zero, zero};
+    csg_term zero = csg_term_number(w->t, 0), at[CSG_FORMULA_MOST_VARIABLES] = {zero, zero, zero};
     for (uint32_t k = 0; k < node->child_count; k++)
         at[k] = w->values[children[k]];
     return csg_term_mul_number(w->t, formula(w, f, at), 1 / f->lipschitz);

@@ -10,8 +10,10 @@
 #include "base/geometry.h"
 
 typedef struct csg_formula_step {
-    uint8_t op;      /* csg_formula_op */
-    uint32_t a, b;   /* earlier steps; 0 where the operation has fewer operands */
+    uint8_t op; /* csg_formula_op */
+    /* Earlier steps; 0 where the operation has fewer operands. X, Y and Z: a = g makes them
+     * variables 3 g, 3 g + 1 and 3 g + 2 (csg_formula_variable_of). */
+    uint32_t a, b;
     double constant; /* of CONSTANT, else 0 */
 } csg_formula_step;
 
@@ -38,6 +40,7 @@ typedef struct csg_formula {
 
 enum {
     CSG_LONGEST_FORMULA = 1 << 16,
+    CSG_FORMULA_MOST_VARIABLES = 64, /* what a combine node may have of children */
     CSG_FORMULA_SLOTS = 512 /* most values that a formula may need at once, coordinates included */
 };
 

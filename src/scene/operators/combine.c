@@ -14,8 +14,9 @@ void csg_combine_begin(csg_combine *c, const csgm_scene *scene, const csg_node *
 {
     const csg_formula *formula = &scene->formulas[node->payload];
     *c = (csg_combine){.scene = scene, .formula = formula};
+    c->operands = node->child_count;
     csg_formula_trends(&scene->context->memory, scene->steps + formula->first, formula->count,
-                       c->trends);
+                       c->operands, c->trends);
     c->bytes = formula->count * sizeof *c->work;
     c->work = csg_memory_alloc(&scene->context->memory, c->bytes);
 }
@@ -28,17 +29,18 @@ void csg_combine_end(csg_combine *c)
 /* The largest value where every operand that the formula rises with is below -t. */
 static double highest_below(const csg_combine *c, double t)
 {
-    double at[3];
-    for (int k = 0; k < 3; k++)
+    double at[CSG_COMBINE_MOST] = {0};
+    for (uint32_t k = 0; k < c->operands; k++)
         at[k] = c->trends[k] > 0 ? -t : -FARTHEST;
-    csg_formula_dual dual = csg_formula_evaluate(c->scene->steps, c->formula,
-                                                 csg_vec3_make(at[0], at[1], at[2]), c->work);
+    csg_formula_dual dual = csg_formula_evaluate_group(c->scene->steps, c->formula, at, 0, c->work);
     return dual.value / c->formula->lipschitz;
 }
 
 double csg_combine_inner_level(const csg_combine *c, double level)
 {
-    bool known = c->work && c->trends[0] && c->trends[1] && c->trends[2];
+    bool known = c->work;
+    for (uint32_t k = 0; k < c->operands; k++)
+        known = known && c->trends[k];
     if (!known || !isfinite(level))
         return INFINITY;
     double t = fmax(level, 0);

@@ -6,12 +6,14 @@
 
 #include "scene/scene.h"
 
-enum { CSG_COMBINE_MOST = 3 };
+/* Children of a node, each a variable of its formula. */
+enum { CSG_COMBINE_MOST = CSG_FORMULA_MOST_VARIABLES };
 
 /* How a node's formula goes with its operands. */
 typedef struct csg_combine {
     const csgm_scene *scene;
     const csg_formula *formula;
+    uint32_t operands;
     int trends[CSG_COMBINE_MOST]; /* csg_formula_trends */
     csg_formula_dual *work;       /* NULL: no memory, and nothing is known */
     size_t bytes;

@@ -577,7 +577,11 @@ csg_node_id csg_build_operator(csg_scene_builder *builder, csg_node_kind kind, c
     if (left && !kept)
         return csg_build_no_memory(builder);
     gather_operands(builder->scene, kind, blend, children, count, kept);
-    csg_node_id result = left    ? join_operands(builder, kind, blend, kept, left, where)
+    double support =
+        left > 1 && !csg_blend_takes_fields(blend.kind) ? csg_build_support(builder, blend) : 0;
+    bool ready = csg_build_end_plateaus(builder, kind, support, kept, left);
+    csg_node_id result = !ready  ? CSG_NODE_NONE
+                         : left  ? join_operands(builder, kind, blend, kept, left, where)
                          : count ? children[0]
                                  : csg_build_empty(builder, where);
     csg_memory_release(memory, kept, left * sizeof *kept);

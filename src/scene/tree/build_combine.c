@@ -88,9 +88,9 @@ static csg_node_id sharpen(sharp_formula *f, uint32_t at)
     const csg_formula_step *step = &f->steps[at];
     if (step->op == CSG_FORMULA_MAX || step->op == CSG_FORMULA_MIN)
         return sharpen_pair(f, step);
-    size_t child = (size_t)(step->op - CSG_FORMULA_X);
-    f->is_sharp = step->op >= CSG_FORMULA_X && step->op <= CSG_FORMULA_Z &&
-                  child < f->child_count && f->named[child]++ == 0;
+    bool is_operand = step->op >= CSG_FORMULA_X && step->op <= CSG_FORMULA_Z;
+    size_t child = is_operand ? csg_formula_variable_of(step) : f->child_count;
+    f->is_sharp = child < f->child_count && f->named[child]++ == 0;
     return f->is_sharp ? f->children[child] : CSG_NODE_NONE;
 }
 

@@ -33,6 +33,14 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
 /* Range and angles of a rule for these operands; *blend may become another. */
 bool csg_build_settle_rule(csg_scene_builder *builder, csg_node_kind kind, csg_blend *blend,
                            const csg_node_id *operands, size_t count, double *range);
+/* The width beyond which a blend that was made here leaves operands as they are; INFINITY for some.
+ */
+double csg_build_support(const csg_scene_builder *builder, csg_blend blend);
+/* Soft operands of a union, and those that are subtracted, get an end where a blend of lengths
+ * would reach beyond their field's plateau: `operands` are replaced. Figures are left as they are.
+ * False: a failure, which is noted. */
+bool csg_build_end_plateaus(csg_scene_builder *builder, csg_node_kind kind, double support,
+                            csg_node_id *operands, size_t count);
 /* csg_build_combine with a slope that is known to hold. */
 csg_node_id csg_build_combine_known(csg_scene_builder *builder, const csg_formula_step *steps,
                                     uint32_t count, double slope, const csg_node_id *children,

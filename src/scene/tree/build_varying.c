@@ -68,8 +68,10 @@ static bool check_radius(varying *v)
     return v->builder->status == CSGM_OK;
 }
 
-/* max(x, y, (x + y) / 2 + r - sqrt(r^2/2 - min(|x - y|, r)^2 / 4)), its mirror image, or that of
- * y's complement; x is `scale` times the first operand, r v->divisor times the third. */
+/* max(x, y, (x + y) / 2 + r - sqrt(r^2 + max(r^2 - (x - y)^2, 0)) / 2), its mirror image, or that
+ * of y's complement; x is `scale` times the first operand, r v->divisor times the third. Written so
+ * the root is of no less than the least r^2 in intervals, too, and nothing has a kink where x = y.
+ */
 static csg_term joint(csg_terms *t, const varying *v, double scale)
 {
     csg_term x = csg_term_mul_number(t, csg_formula_apply(t, CSG_FORMULA_X, 0, 0), scale);
@@ -79,14 +81,14 @@ static csg_term joint(csg_terms *t, const varying *v, double scale)
         r = csg_term_max_number(t, r, THINNEST * v->range[1]);
     if (v->kind == CSG_NODE_DIFFERENCE)
         y = csg_term_neg(t, y);
-    csg_term apart = csg_term_min(t, csg_term_abs(t, csg_term_sub(t, x, y)), r);
-    csg_term square = csg_term_sub(t, csg_term_mul_number(t, csg_term_square(t, r), 0.5),
-                                   csg_term_mul_number(t, csg_term_square(t, apart), 0.25));
-    csg_term s = csg_term_sub(t, r, csg_term_sqrt(t, square));
+    csg_term apart = csg_term_sub(t, x, y), square_of_r = csg_term_square(t, r);
+    csg_term inner = csg_term_sub(t, square_of_r, csg_term_square(t, apart));
+    csg_term under = csg_term_add(t, square_of_r, csg_term_max_number(t, inner, 0));
+    csg_term s = csg_term_sub(t, r, csg_term_mul_number(t, csg_term_sqrt(t, under), 0.5));
     csg_term middle = csg_term_mul_number(t, csg_term_add(t, x, y), 0.5);
     return v->kind == CSG_NODE_UNION
-               ? csg_term_max(t, csg_term_max(t, x, y), csg_term_add(t, middle, s))
-               : csg_term_min(t, csg_term_min(t, x, y), csg_term_sub(t, middle, s));
+               ? csg_term_max(t, csg_term_max(t, csg_term_add(t, middle, s), x), y)
+               : csg_term_min(t, csg_term_min(t, csg_term_sub(t, middle, s), x), y);
 }
 
 static csg_node_id radius_field(const varying *v)
@@ -160,7 +162,7 @@ static size_t without_empty(const csg_scene_builder *builder, csg_node_kind kind
     return kept;
 }
 
-static csg_node_id fold(varying *v, const csg_node_id *operands, size_t count)
+static csg_node_id fold(varying *v, csg_node_id *operands, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (csg_build_is_flat(v->builder, operands[i])) {
@@ -177,6 +179,8 @@ static csg_node_id fold(varying *v, const csg_node_id *operands, size_t count)
         return CSG_NODE_NONE;
     if (!(v->range[1] > CSG_SMALLEST_LENGTH)) /* as a blend without width */
         return csg_build_operator(v->builder, v->kind, CSG_SHARP, operands, count, v->where);
+    if (!csg_build_end_plateaus(v->builder, v->kind, v->range[1], operands, count))
+        return CSG_NODE_NONE;
     csg_node_id node = operands[0];
     double scale = 1;
     for (size_t i = 1; i < count && node != CSG_NODE_NONE; i++)

@@ -206,7 +206,7 @@ static void put_warp(const csg_printer *out, const csg_warp *warp)
 
 static bool put_profiled(const csg_printer *out, const csg_node *node)
 {
-    static const csg_formula_words words = {"x", {"x", "", ""}};
+    static const csg_formula_words words = {"x", {"x", "", ""}, NULL};
     const csgm_scene *scene = out->scene;
     const csg_formula *profile = &scene->formulas[node->payload + 1];
     csg_put(out, csg_node_kind_name((csg_node_kind)scene->formulas[node->payload].joins));
@@ -222,7 +222,9 @@ static bool put_combine(const csg_printer *out, const csg_node *node)
     static const char *const parameters[] = {"", "a", "a, b", "a, b, c"};
     const csgm_scene *scene = out->scene;
     const csg_formula *formula = &scene->formulas[node->payload];
-    const csg_formula_words words = {parameters[node->child_count], {"a", "b", "c"}};
+    bool listed = node->child_count > 3;
+    const csg_formula_words words = {
+        listed ? "f" : parameters[node->child_count], {"a", "b", "c"}, listed ? "f" : NULL};
     csg_put(out, "combine(");
     bool done = csg_formula_print(&scene->context->memory, scene->steps + formula->first,
                                   formula->count, &words, out->sink, out->user);

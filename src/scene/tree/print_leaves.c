@@ -33,7 +33,7 @@ static void put_primitive(const csg_printer *out, const csg_node *node)
 
 static bool put_field(const csg_printer *out, const csg_node *node)
 {
-    static const csg_formula_words words = {"p", {"p.x", "p.y", "p.z"}};
+    static const csg_formula_words words = {"p", {"p.x", "p.y", "p.z"}, NULL};
     const csgm_scene *scene = out->scene;
     const csg_formula *formula = &scene->formulas[node->payload];
     csg_box domain = formula->bounds;
