@@ -16,6 +16,12 @@ csgm_rank_work csgm_rank_work_default(void)
     return (csgm_rank_work){.struct_size = sizeof(csgm_rank_work)};
 }
 
+void csg_ranks_begin_mesh(csgm_context *context)
+{
+    if (context->ranks)
+        context->ranks->work = csgm_rank_work_default();
+}
+
 csgm_status csgm_context_join(csgm_context *context, const csgm_communicator *communicator)
 {
     csgm_communicator own = csgm_communicator_default();

@@ -14,13 +14,14 @@ typedef enum refusal { OTHERS_HAVE_IT, CHANGES_TRIANGLES } refusal;
 static const struct {
     cli_option_id option;
     refusal why;
-} refused[] = {{CLI_OPTION_watch, OTHERS_HAVE_IT},       {CLI_OPTION_lod, OTHERS_HAVE_IT},
-               {CLI_OPTION_cells, OTHERS_HAVE_IT},       {CLI_OPTION_depfile, OTHERS_HAVE_IT},
-               {CLI_OPTION_trace, OTHERS_HAVE_IT},       {CLI_OPTION_smooth, OTHERS_HAVE_IT},
-               {CLI_OPTION_roots, OTHERS_HAVE_IT},       {CLI_OPTION_sandbox, OTHERS_HAVE_IT},
-               {CLI_OPTION_summary, OTHERS_HAVE_IT},     {CLI_OPTION_tolerance, CHANGES_TRIANGLES},
-               {CLI_OPTION_quality, CHANGES_TRIANGLES},  {CLI_OPTION_triangles, CHANGES_TRIANGLES},
-               {CLI_OPTION_simplify, CHANGES_TRIANGLES}, {CLI_OPTION_improve, CHANGES_TRIANGLES}};
+} refused[] = {{CLI_OPTION_watch, OTHERS_HAVE_IT},        {CLI_OPTION_lod, OTHERS_HAVE_IT},
+               {CLI_OPTION_cells, OTHERS_HAVE_IT},        {CLI_OPTION_depfile, OTHERS_HAVE_IT},
+               {CLI_OPTION_trace, OTHERS_HAVE_IT},        {CLI_OPTION_smooth, OTHERS_HAVE_IT},
+               {CLI_OPTION_roots, OTHERS_HAVE_IT},        {CLI_OPTION_sandbox, OTHERS_HAVE_IT},
+               {CLI_OPTION_summary, OTHERS_HAVE_IT},      {CLI_OPTION_stats_full, OTHERS_HAVE_IT},
+               {CLI_OPTION_tolerance, CHANGES_TRIANGLES}, {CLI_OPTION_quality, CHANGES_TRIANGLES},
+               {CLI_OPTION_triangles, CHANGES_TRIANGLES}, {CLI_OPTION_simplify, CHANGES_TRIANGLES},
+               {CLI_OPTION_improve, CHANGES_TRIANGLES}};
 enum { REFUSED = sizeof refused / sizeof *refused };
 
 static bool is_refused(cli_option_id option)
