@@ -93,8 +93,10 @@ static csgm_status build_with_figures(order *o, const csg_mesh_receiver *receive
     sampled.begin = begin_samples;
     sampled.put = put_sampled;
     csg_mesh_figures *figures;
-    csgm_status status = csg_mesh_figures_create(o->context, &sampled, workers, &figures);
-    if (status == CSGM_OK) {
+    csgm_status status = CSGM_OK;
+    if (!csg_mesh_figures_make(o->context, &sampled, workers, &figures)) {
+        status = csg_context_no_memory(o->context);
+    } else {
         csg_mesh_receiver looking = csg_mesh_figures_receiver(figures);
         status = build_into(o, &looking);
         if (status == CSGM_OK)

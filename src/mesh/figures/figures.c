@@ -31,10 +31,11 @@ typedef struct worker {
     uint32_t *foreign;     /* vertices of other runs, in the order of their local numbers */
     uint32_t *open;        /* local numbers of own vertices whose links are not closed */
     uint32_t *others;      /* triangles that have vertices of other runs */
+    csg_link_mark *marks;  /* one for each vertex */
     csg_seam_vertex **met; /* where those vertices are on the seam */
     csg_table table;       /* of foreign */
     size_t local_room, begin_room, arc_room, piece_room, number_room, foreign_room, open_room;
-    size_t other_room, met_room;
+    size_t other_room, met_room, mark_room;
     size_t own_count, foreign_count, open_count, other_count, corner_count;
 } worker;
 
@@ -140,16 +141,18 @@ static bool sort_arcs(worker *w)
     return is_sound;
 }
 
-/* Notes which links are closed. */
+/* Notes which links are closed. A vertex that the run brings and does not use is open, too: others
+ * want its place. (Of a mesh with copies of vertices those are never asked for.) */
 static void close_links(csg_mesh_figures *f, worker *w, const csg_mesh_run *run)
 {
     uint64_t bits = 0, at = run->first_vertex;
+    memset(w->marks, 0xFF, local_count(w) * sizeof *w->marks); /* of nobody */
     w->open_count = 0;
     for (size_t v = 0; v < w->own_count; v++, at++) {
         size_t count = w->begins[v + 1] - w->begins[v];
-        if (count && csg_link_is_circle(w->arcs + w->begins[v], count))
+        if (count && csg_link_is_circle_of((uint32_t)v, w->arcs + w->begins[v], count, w->marks))
             bits |= (uint64_t)1 << at % WORD_BITS;
-        else if (count)
+        else if (count || run->joined == run->indices)
             w->open[w->open_count++] = (uint32_t)v;
         if (at % WORD_BITS == WORD_BITS - 1 || v + 1 == w->own_count) {
             atomic_fetch_or_explicit(&f->closed[at / WORD_BITS], bits, memory_order_relaxed);
@@ -201,7 +204,7 @@ static bool number_pieces(csg_seam *seam, worker *w)
     for (size_t i = 0; i < w->open_count + w->foreign_count; i++) {
         size_t v = i < w->open_count ? w->open[i] : own + i - w->open_count;
         uint32_t *number = &w->number[w->pieces[v]];
-        if (*number == CSG_SEAM_NONE)
+        if (*number == CSG_SEAM_NONE && w->begins[v] != w->begins[v + 1])
             *number = numbered++;
     }
     uint32_t first = csg_seam_add_pieces(seam, numbered);
@@ -247,12 +250,8 @@ static void measure_own(worker *w, const csg_mesh_run *run)
 {
     const uint32_t own = (uint32_t)w->own_count;
     w->other_count = 0;
-    for (size_t v = 0, end; v < w->own_count; v = end + 1) {
-        for (end = v; end < w->own_count && w->begins[end] != w->begins[end + 1];)
-            end++;
-        if (end > v)
-            w->box = box_of(w->box, run->positions + 3 * v, end - v);
-    }
+    if (w->own_count)
+        w->box = box_of(w->box, run->positions, w->own_count);
     for (size_t i = 0; i < w->corner_count; i += 3) {
         uint32_t a = w->local[i], b = w->local[i + 1], c = w->local[i + 2];
         if (a < own && b < own && c < own)
@@ -349,7 +348,7 @@ static bool reserve(csg_memory *memory, void *slot, size_t *room, size_t count, 
  * the mesh, who would have to end without it. */
 static bool leaves_enough(csg_memory *memory, const csg_mesh_run *run)
 {
-    enum { BYTES_PER_CORNER = 4 + 8 + 4, BYTES_PER_VERTEX = 20, TIMES = 4 };
+    enum { BYTES_PER_CORNER = 4 + 8 + 4, BYTES_PER_VERTEX = 28, TIMES = 4 };
     return csg_memory_allows(memory, TIMES * (3 * run->triangle_count * BYTES_PER_CORNER +
                                               run->vertex_count * BYTES_PER_VERTEX));
 }
@@ -368,6 +367,7 @@ static bool reserve_for_vertices(csg_memory *memory, worker *w)
     return reserve(memory, &w->begins, &w->begin_room, count + 2, sizeof *w->begins) &&
            reserve(memory, &w->pieces, &w->piece_room, count, sizeof *w->pieces) &&
            reserve(memory, &w->number, &w->number_room, count, sizeof *w->number) &&
+           reserve(memory, &w->marks, &w->mark_room, count, sizeof *w->marks) &&
            reserve(memory, &w->met, &w->met_room, w->foreign_count, sizeof *w->met);
 }
 
@@ -381,6 +381,7 @@ static void release_worker(csg_memory *memory, worker *w)
     csg_memory_release(memory, w->foreign, w->foreign_room * sizeof *w->foreign);
     csg_memory_release(memory, w->open, w->open_room * sizeof *w->open);
     csg_memory_release(memory, w->others, w->other_room * sizeof *w->others);
+    csg_memory_release(memory, w->marks, w->mark_room * sizeof *w->marks);
     csg_memory_release(memory, w->met, w->met_room * sizeof *w->met);
     csg_table_release(&w->table);
     *w = (worker){.table = w->table};
@@ -452,8 +453,8 @@ static csgm_status begin_runs(void *user, const csg_mesh_counts *counts)
 
 /* ---- all of them -------------------------------------------------------------------------------- */
 
-csgm_status csg_mesh_figures_create(csgm_context *context, const csg_mesh_receiver *to,
-                                    uint32_t workers, csg_mesh_figures **out)
+bool csg_mesh_figures_make(csgm_context *context, const csg_mesh_receiver *to, uint32_t workers,
+                           csg_mesh_figures **out)
 {
     csg_memory *memory = &context->memory;
     csg_mesh_figures *f = csg_memory_alloc(memory, sizeof *f);
@@ -461,7 +462,7 @@ csgm_status csg_mesh_figures_create(csgm_context *context, const csg_mesh_receiv
     if (!f || !each) {
         csg_memory_release(memory, f, sizeof *f);
         csg_memory_release(memory, each, workers * sizeof *each);
-        return csg_context_no_memory(context);
+        return false;
     }
     memset(f, 0, sizeof *f);
     memset(each, 0, workers * sizeof *each);
@@ -474,7 +475,7 @@ csgm_status csg_mesh_figures_create(csgm_context *context, const csg_mesh_receiv
         csg_table_init(&each[i].table, memory);
     pthread_mutex_init(&f->lock, NULL);
     *out = f;
-    return CSGM_OK;
+    return true;
 }
 
 csg_mesh_receiver csg_mesh_figures_receiver(csg_mesh_figures *f)

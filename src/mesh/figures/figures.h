@@ -18,13 +18,13 @@
 
 typedef struct csg_mesh_figures csg_mesh_figures;
 
-/* What hands runs on to `to`, which is copied. workers: run.worker stays below. Reports what fails
- * (memory only). Memory that runs out later ends the figures and nothing else. */
-csgm_status csg_mesh_figures_create(csgm_context *context, const csg_mesh_receiver *to,
-                                    uint32_t workers, csg_mesh_figures **out);
+/* What hands runs on to `to`, which is copied. workers: run.worker stays below. False: out of
+ * memory, not reported. Memory that runs out later ends the figures and nothing else. */
+bool csg_mesh_figures_make(csgm_context *context, const csg_mesh_receiver *to, uint32_t workers,
+                           csg_mesh_figures **out);
 csg_mesh_receiver csg_mesh_figures_receiver(csg_mesh_figures *figures);
-/* Once all runs have come. False, and *out is as it was: it is no closed manifold, or memory ran
- * out. */
+/* Once all runs have come. False, and *out is as it was: it is no closed manifold, there are
+ * vertices (but copies) that no triangle uses, or memory ran out. */
 bool csg_mesh_figures_get(csg_mesh_figures *figures, csgm_mesh_check *out);
 void csg_mesh_figures_destroy(csg_mesh_figures *figures);
 

@@ -33,4 +33,29 @@ static inline bool csg_link_is_circle(csg_link_arc *arcs, size_t count)
     return arcs[count - 1].to == arcs[0].from;
 }
 
+/* Where a circle goes on from a vertex, and whose circle that is. */
+typedef struct csg_link_mark {
+    uint32_t of, to;
+} csg_link_mark;
+
+/* The same, and arcs keep their order. marks: one for each number that arcs have, none of which is
+ * of this vertex yet. */
+static inline bool csg_link_is_circle_of(uint32_t vertex, const csg_link_arc *arcs, size_t count,
+                                         csg_link_mark *marks)
+{
+    bool is_simple = true;
+    for (size_t i = 0; i < count; i++) {
+        is_simple &= marks[arcs[i].from].of != vertex;
+        marks[arcs[i].from] = (csg_link_mark){vertex, arcs[i].to};
+    }
+    uint32_t at = arcs[0].from;
+    size_t steps = 0;
+    do {
+        is_simple &= marks[at].of == vertex;
+        at = marks[at].to;
+        steps++;
+    } while (is_simple && at != arcs[0].from && steps < count);
+    return is_simple && at == arcs[0].from && steps == count;
+}
+
 #endif

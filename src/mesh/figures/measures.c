@@ -8,6 +8,16 @@
 
 #include "base/elementary.h"
 
+/* Built for several instruction sets, of which the dynamic linker takes the machine's: operations
+ * are rounded each for itself, so all of them find the same bits. (With sanitizers the linker would
+ * ask before these are ready.) */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) &&       \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FOR_EACH_MACHINE __attribute__((target_clones("default", "avx2", "arch=skylake-avx512")))
+#else
+#define FOR_EACH_MACHINE
+#endif
+
 enum { LANES = 8 };
 
 /* Of a batch, triangle by triangle. */
@@ -36,7 +46,7 @@ static inline double round_to(double x, double step)
 }
 
 /* False: a term is not finite. */
-static bool add_terms(csg_exact_sum *sum, const double *term, size_t count)
+FOR_EACH_MACHINE static bool add_terms(csg_exact_sum *sum, const double *term, size_t count)
 {
     double coarse[LANES] = {0}, fine[LANES] = {0};
     for (size_t i = 0; i < count; i += LANES)
@@ -67,7 +77,7 @@ static double sum_of(const csg_exact_sum *sum)
 /* One corner's coordinate in the frame of the apex. */
 #define AT(corner_axis, apex_axis) ((double)m->corner[corner_axis][i] - apex.apex_axis)
 
-static void find_terms(const csg_mesh_measures *m, size_t count, terms *out)
+FOR_EACH_MACHINE static void find_terms(const csg_mesh_measures *m, size_t count, terms *out)
 {
     const csg_vec3 apex = m->apex;
     for (size_t i = 0; i < count; i++) {

@@ -113,7 +113,9 @@ csg_seam_vertex *csg_seam_meet(csg_seam *s, uint32_t number, uint32_t piece, con
     if (v->number == NONE) {
         *v = (csg_seam_vertex){.number = number, .piece = piece, .arcs = NONE, .waiting = NONE};
         s->count++;
-    } else {
+    } else if (v->piece == NONE) {
+        v->piece = piece;
+    } else if (piece != NONE) {
         csg_sets_join(s->pieces, v->piece, piece);
     }
     if (at) {

@@ -46,7 +46,8 @@ uint32_t csg_seam_add_pieces(csg_seam *seam, size_t count);
 /* Room for so many vertices more, and arcs at each: until it is called again, or a vertex closed,
  * vertices stay where csg_seam_meet says that they are. */
 bool csg_seam_reserve(csg_seam *seam, size_t vertices, size_t arcs);
-/* Some of the link of a vertex, in a piece, in room that was reserved. at: its place, NULL where
+/* Some of the link of a vertex, in a piece (CSG_SEAM_NONE: nothing of it yet), in room that was
+ * reserved. at: its place, NULL where
  * another run has it. */
 csg_seam_vertex *csg_seam_meet(csg_seam *seam, uint32_t vertex, uint32_t piece, const float *at);
 void csg_seam_add_arc(csg_seam *seam, csg_seam_vertex *vertex, csg_link_arc arc);
