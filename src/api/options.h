@@ -13,6 +13,9 @@ bool csg_options_adopt(void *own, size_t own_bytes, const void *given);
 /* The same for scenes, whose options are checked here, too. */
 bool csg_scene_options_adopt(csgm_scene_options *own, const csgm_scene_options *given);
 
+/* The same for meshes: at most one goal of thinning out. */
+bool csg_mesh_options_adopt(csgm_mesh_options *own, const csgm_mesh_options *given);
+
 /* Is the struct's size one that a version has had? NULL is. */
 bool csg_struct_is_known(const void *given, size_t own_bytes);
 /* Fills the caller's struct from ours as far as it goes; its size stays. NULL: nothing. */

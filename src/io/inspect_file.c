@@ -23,6 +23,7 @@
 #include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"
+#include "mesh/figures/measures.h"
 #include "mesh/inspect.h"
 
 /* A vertex: its number and zeros, or the bits of its place. */
@@ -164,7 +165,7 @@ static csgm_status write_down(scan *s, void *user, const csg_runs_triangle *t, c
     bool sound = is_sound(k);
     uint32_t number = (uint32_t)in->triangle++;
     if (in->measures && sound)
-        csg_mesh_measures_add(in->measures, place(t, 0), place(t, 1), place(t, 2));
+        csg_mesh_measures_put(in->measures, t->at[0], t->at[1], t->at[2]);
     for (int c = 0; c < 3; c++) {
         uint64_t hash = hash_of(&k[c]), high = hash >> (64 - HASH_BITS);
         if (high < in->first || high >= in->end)

@@ -9,14 +9,13 @@
  */
 #include "mesh/inspect.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/elementary.h"
 #include "base/geometry.h"
 #include "base/mesh_codes.h"
 #include "base/sets.h"
+#include "mesh/figures/measures.h"
 #include "mesh/watch.h"
 #include "mesh/weld.h"
 
@@ -212,10 +211,9 @@ static void count_components(inspection *in)
 
 /* ---- measures ------------------------------------------------------------------------ */
 
-static csg_vec3 position(const inspection *in, uint32_t vertex)
+static const float *position(const inspection *in, uint32_t vertex)
 {
-    const float *p = in->mesh->positions + 3 * (size_t)vertex;
-    return csg_vec3_make(p[0], p[1], p[2]);
+    return in->mesh->positions + 3 * (size_t)vertex;
 }
 
 static csg_box used_box(const inspection *in)
@@ -224,71 +222,10 @@ static csg_box used_box(const inspection *in)
     for (uint64_t v = 0; v < in->mesh->vertex_count; v++) {
         if (!in->fans[v])
             continue;
-        csg_vec3 p = position(in, (uint32_t)v);
+        csg_vec3 p = csg_vec3_from_floats(position(in, (uint32_t)v));
         box = csg_box_hull(box, (csg_box){p, p});
     }
     return box;
-}
-
-/* Largest cotangent of a triangle's angles: that of its smallest one, opposite the shortest edge.
- * cross is twice the area, > 0. */
-static double largest_cotangent(const csg_vec3 *edge, double cross)
-{
-    double largest = -INFINITY;
-    for (int k = 0; k < 3; k++) {
-        double cotangent = -csg_vec3_dot(edge[k], edge[(k + 1) % 3]) / cross;
-        largest = cotangent > largest ? cotangent : largest;
-    }
-    return largest;
-}
-
-/* Longest side over smallest altitude. */
-static double aspect_of(const csg_vec3 edge[3], double cross)
-{
-    double longest = 0;
-    for (int k = 0; k < 3; k++)
-        longest = fmax(longest, csg_vec3_dot(edge[k], edge[k]));
-    return longest / cross;
-}
-
-csg_mesh_measures csg_mesh_measures_begin(csg_box box)
-{
-    bool empty = !(box.min.x <= box.max.x);
-    return (csg_mesh_measures){.apex = empty ? csg_vec3_make(0, 0, 0) : csg_box_center(box),
-                               .cotangent = -INFINITY};
-}
-
-void csg_mesh_measures_add(csg_mesh_measures *m, csg_vec3 a, csg_vec3 b, csg_vec3 c)
-{
-    a = csg_vec3_sub(a, m->apex);
-    b = csg_vec3_sub(b, m->apex);
-    c = csg_vec3_sub(c, m->apex);
-    csg_vec3 edge[3] = {csg_vec3_sub(b, a), csg_vec3_sub(c, b), csg_vec3_sub(a, c)};
-    csg_vec3 normal = csg_vec3_cross(edge[0], edge[1]);
-    double cross = csg_vec3_norm(normal);
-    m->triangles++;
-    m->volume += csg_vec3_dot(a, normal) / 6;
-    m->area += cross / 2;
-    if (cross > 0) {
-        m->cotangent = fmax(m->cotangent, largest_cotangent(edge, cross));
-        m->aspect = fmax(m->aspect, aspect_of(edge, cross));
-    } else {
-        m->flat++;
-    }
-}
-
-void csg_mesh_measures_end(const csg_mesh_measures *m, csg_box box, csgm_vec3 origin,
-                           csgm_mesh_check *check)
-{
-    bool flat = m->flat > 0 || m->triangles == 0;
-    check->area = m->area;
-    check->volume = m->volume;
-    check->zero_area_triangles = m->flat;
-    check->min_angle_deg = flat ? 0 : csg_atan2(1, m->cotangent) * 180 / csg_acos(-1);
-    check->max_aspect = m->flat ? INFINITY : m->aspect;
-    check->bounds = box;
-    if (m->triangles)
-        check->bounds = (csg_box){csg_vec3_add(box.min, origin), csg_vec3_add(box.max, origin)};
 }
 
 static void measure(inspection *in)
@@ -298,7 +235,7 @@ static void measure(inspection *in)
     for (uint64_t t = 0; t < in->mesh->triangle_count && may_go_on(in, t); t++) {
         const uint32_t *v = triangle_at(in, t);
         if (is_sound(in, v))
-            csg_mesh_measures_add(&measures, position(in, v[0]), position(in, v[1]),
+            csg_mesh_measures_put(&measures, position(in, v[0]), position(in, v[1]),
                                   position(in, v[2]));
     }
     csg_mesh_measures_end(&measures, box, in->mesh->origin, in->check);

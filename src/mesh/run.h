@@ -6,11 +6,14 @@
 #define CSG_MESH_RUN_H
 
 #include "base/context.h"
+#include "base/geometry.h"
 
 typedef struct csg_mesh_counts {
     uint64_t vertex_count, triangle_count;
     bool normals, colors;
+    bool split; /* vertices have copies, one after the other, where normals differ */
     csgm_vec3 origin;
+    csg_box bounds; /* around all vertices, but for rounding; in the mesh's frame */
 } csg_mesh_counts;
 
 typedef struct csg_mesh_run {
@@ -20,6 +23,8 @@ typedef struct csg_mesh_run {
     const uint8_t *colors;
     const uint32_t *indices; /* of first_triangle; numbers of the whole mesh */
     const float *corners; /* of first_triangle: 9 floats per triangle; then nothing of the above */
+    /* Where they are wanted: as indices, but copies of a vertex that is split are all the first. */
+    const uint32_t *joined;
 } csg_mesh_run;
 
 typedef struct csg_mesh_receiver {
@@ -35,6 +40,7 @@ typedef struct csg_mesh_receiver {
     /* All runs until now are where they stay. False: as put. */
     bool (*flush)(void *user);
     bool wants_corners; /* runs of loose triangles instead of vertices and indices */
+    bool wants_joined;
 } csg_mesh_receiver;
 
 #endif

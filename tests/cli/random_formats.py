@@ -166,7 +166,7 @@ def tried(text, settings, folder):
     with open(os.path.join(folder, "scene.txt"), "w", encoding="utf-8") as file:
         file.write(text)
     outputs = [word for name in FILES for word in ("-o", name)]
-    command = [cli.PROGRAM, "scene.txt", *settings, *outputs, "--stats=stats.json", "--timeout", "60", "-j", "1", "--no-sync"]
+    command = [cli.PROGRAM, "scene.txt", *settings, *outputs, "--stats-full", "--stats=stats.json", "--timeout", "60", "-j", "1", "--no-sync"]
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=False)
     if result.returncode != DONE:
         # E0505: too fine for a format's steps, as a solid of a thousand units off is for Draco's

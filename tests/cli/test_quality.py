@@ -14,7 +14,7 @@ PAIR = 'part("a") color("red") cube(4);\npart("b") color("blue") translate([6, 0
 class Quality(cli.CliTest):
     def stats(self, text, *options, status=0):
         self.write("scene.txt", text)
-        result = cli.run("scene.txt", "-o", "out.ply", "--stats", *options, cwd=self.folder)
+        result = cli.run("scene.txt", "-o", "out.ply", "--stats-full", *options, cwd=self.folder)
         self.assert_status(result, status)
         return json.loads(result.stdout)
 
@@ -184,7 +184,7 @@ intersection(blend = 0.3) {
         text = 'color("red") cube([20, 10, 5]); color("blue") translate([5, -5, -1]) cube([5, 20, 7]);'
         for name, taken in (("out.glb", True), ("out.obj", True), ("out.stl", True), ("out.ply", False), ("out.3mf", False)):
             self.write("scene.txt", text)
-            result = cli.run("scene.txt", "-o", name, "--stats", cwd=self.folder)
+            result = cli.run("scene.txt", "-o", name, "--stats-full", cwd=self.folder)
             self.assert_status(result, 0)
             stats = json.loads(result.stdout)
             self.assertEqual("own_triangles" in stats["lattice"], taken, name)

@@ -182,6 +182,32 @@ class Statistics(cli.CliTest):
         self.assertGreater(stats["octree"]["leaf_blocks"], 0)
         self.assertGreater(stats["time_s"]["total"], 0)
 
+    def test_streamed(self):
+        """Of a mesh that goes by there are the figures of the one in memory, with the same digits for any number of threads."""
+        self.write("a.txt", "difference() { union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); } cylinder(h = 30, r = 2, center = true); }\n")
+        for name in ("a.ply", "a.stl", "a.glb"):
+            options = ("a.txt", "-r", "90", "-o", name)
+            full = self.stats(*options, "--stats-full")
+            for more in (["-j", "1"], ["-j", "3"], ["-j", "2", "--max-memory", "8M"], ["--bounds=-20,-20,0,20,20,20"]):
+                with self.subTest((name, more)):
+                    if more[0] == "--bounds=-20,-20,0,20,20,20":
+                        full = self.stats(*options, *more, "--stats-full")
+                    stats = self.stats(*options, *more)
+                    self.assertEqual(stats["mesh"], full["mesh"])
+                    self.assertEqual(set(stats["quality"]), set(full["quality"]))
+                    if "--bounds" not in more[0]:
+                        self.assertLess(stats["quality"]["max_abs_field"], 1e-4)
+                    self.assertNotIn("area", stats["files"][0])
+
+    def test_full_implies_statistics(self):
+        self.write("a.txt", "sphere(1);\n")
+        full = self.stats("a.txt", "-r", "16", "-o", "a.ply", "--stats-full")
+        self.assertEqual(full["files"][0]["area"], full["mesh"]["area"])
+        alone = self.run_in("a.txt", "-r", "16", "-o", "a.ply", "--stats-full")
+        self.assertEqual(json.loads(alone.stdout)["mesh"], full["mesh"])
+        self.assert_status(self.run_in("a.txt", "-r", "16", "-o", "a.ply", "--stats=full"), 0)  # a file of that name
+        self.assertNotIn("area", json.loads(self.read("full"))["files"][0])
+
     def test_agrees_with_info(self):
         self.write("a.txt", cli.BLEND)
         stats = self.stats("a.txt", "-r", "32", "-o", "a.ply")["mesh"]
@@ -191,22 +217,20 @@ class Statistics(cli.CliTest):
         self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
 
     def test_without_room_for_the_mesh(self):
-        """It goes to its file as it does without --stats, and what needs all of it is left out with a word; the file is looked
-        at all the same, in runs."""
+        """It goes to its file as it does without --stats, and its figures are those that go by; the file is looked at in runs."""
         self.write("a.txt", "sphere(10);\n")
         options = ("a.txt", "-r", "200", "-j", "2", "-o", "a.ply", "--max-memory")
-        wide = self.stats(*options, "1G")
-        whole = wide["mesh"]
+        wide = self.stats(*options, "1G", "--stats-full")
         want = self.read("a.ply")
-        result = self.run_in(*options, "8M", "--stats=s.json")
+        result = self.run_in(*options, "8M", "--stats-full", "--stats=s.json")
         self.assert_status(result, 0)
-        self.assertIn("warning: --stats: area, volume, topology", result.stderr)
-        self.assertNotIn("E0901", result.stderr)
+        self.assertEqual(result.stderr, "")
         self.assertEqual(self.read("a.ply"), want)
         stats = json.loads(self.read("s.json"))
-        self.assertEqual(stats["mesh"], {key: whole[key] for key in ("vertices", "triangles")})
-        self.assertIn(", but those of its file\n", result.stderr)
-        self.assertEqual((stats["quality"], stats["files"]), ({}, wide["files"]))
+        for key in ("mesh", "quality", "files"):
+            self.assertEqual(stats[key], wide[key])
+        stats = self.stats(*options, "8M")
+        self.assertEqual((stats["mesh"], stats["files"]), (wide["mesh"], [{"name": "a.ply", "format": "ply"}]))
         for name, limit in (("a.ply", "3M"), ("a.stl", "3M")):  # some 100 bytes for each of 270 000 triangles else
             self.assert_status(self.run_in("a.txt", "-r", "200", "-j", "2", "-o", name, "-q"), 0)
             self.assertEqual(self.run_in("info", "--json", name, "--max-memory", limit).stdout, self.run_in("info", "--json", name).stdout)
@@ -216,7 +240,7 @@ class Statistics(cli.CliTest):
     def test_parts_that_touch(self):
         """Each is closed; a file that has nothing but places joins them, and a warning and --stats say so."""
         self.write("two.txt", 'part("a") cube(10);\npart("b") translate([10, 0, 0]) cube(10);\n')
-        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.stl", "--stats")
+        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.stl", "--stats-full")
         self.assert_status(result, 0)
         files = {file["format"]: file for file in json.loads(result.stdout)["files"]}
         self.assertTrue(files["ply"]["manifold"])
@@ -233,7 +257,7 @@ class Statistics(cli.CliTest):
     def test_parts_that_touch_in_a_corner(self):
         """Copies of a corner are no places of their own, and stay with their parts."""
         self.write("two.txt", 'part("a") cube(10, center = true);\npart("b") translate([10, 10, 10]) cube(10, center = true);\n')
-        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.obj", "-o", "a.stl", "--normals", "crease", "--stats")
+        result = self.run_in("two.txt", "-o", "a.ply", "-o", "a.obj", "-o", "a.stl", "--normals", "crease", "--stats-full")
         self.assert_status(result, 0)
         stats = json.loads(result.stdout)
         self.assertTrue(stats["mesh"]["manifold"])
@@ -267,7 +291,7 @@ class Statistics(cli.CliTest):
         """Each file as it is read back: what rounding and quantising have made of the mesh."""
         self.write("far.txt", "translate([5000, 5000, 5000]) union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); }\n")
         names = ["a.stl", "a.ply"] + ["a.drc"] * cli.has_library("Draco")
-        files = self.stats("far.txt", "-r", "128", *(word for name in names for word in ("-o", name)))["files"]
+        files = self.stats("far.txt", "-r", "128", "--stats-full", *(word for name in names for word in ("-o", name)))["files"]
         self.assertEqual([file["name"] for file in files], names)
         for file in files:
             self.assertTrue(file["manifold"], file["name"])

@@ -138,7 +138,7 @@ class BadOutput(cli.CliTest):
         there is neither."""
         seen = set()
         for limit in range(300, 9000, 150):
-            result = self.run_in("a.txt", "-r", "48", "-j", "1", "-o", "a.obj", "--stats=s.json", "--max-memory",
+            result = self.run_in("a.txt", "-r", "48", "-j", "1", "-o", "a.obj", "--stats-full", "--stats=s.json", "--max-memory",
                                  f"{limit}K")
             self.assert_clean(result)
             self.assertIn(result.returncode, (0, 2), result.stderr)

@@ -5,6 +5,7 @@
 #include <csgmesh/csgmesh.h>
 #include <csgmesh/editing.h>
 #include <csgmesh/fabrication.h>
+#include <csgmesh/figures.h>
 #include <csgmesh/ranks.h>
 #include <csgmesh/reshaping.h>
 #include <csgmesh/slicing.h>

@@ -43,6 +43,7 @@ static uint64_t seed; /* of the scene */
 
 typedef struct tally {
     uint32_t known, bent, near, turned;
+    uint32_t pieces, volumes; /* where there are several */
 } tally;
 
 /* Along the slope from a random point to where the polynomial is its room and a little more, or as
@@ -148,6 +149,88 @@ static void try_gradients(const mesh_case *m, csg_random *random, const double c
     }
 }
 
+/* Is the point where the piece is the field: 1, it is; -1, it is not; 0, not told. */
+static int is_there(const csg_taylor_piece *piece, const double x[3])
+{
+    int all = 1;
+    for (int n = 0; n < piece->condition_count; n++) {
+        const csg_taylor *g = &piece->conditions[n];
+        double value = polynomial_at(g, x), room = room_at(g, x);
+        if (value < -room)
+            return -1;
+        all = value > room ? all : 0;
+    }
+    return all;
+}
+
+/* Wherever a piece is the field it has its sign, and some piece may be it everywhere. */
+static void try_pieces(const mesh_case *m, csg_random *random, const double c[3], double half,
+                       tally *seen)
+{
+    csg_taylor_pieces f;
+    if (!csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), &f) || f.count < 2)
+        return;
+    csg_vec3 center = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
+    for (int i = 0; i < POINTS; i++) {
+        const double x[3] = {csg_random_uniform(random, -half, half),
+                             csg_random_uniform(random, -half, half),
+                             csg_random_uniform(random, -half, half)};
+        csg_vec3 p = csg_vec3_add(center, csg_vec3_make(x[0], x[1], x[2]));
+        double value = test_sample(m->scene, p).value;
+        bool any = false;
+        for (int n = 0; n < f.count; n++) {
+            double over = polynomial_at(&f.of[n].f, x), room = room_at(&f.of[n].f, x);
+            int there = is_there(&f.of[n], x);
+            any |= there >= 0;
+            if (there > 0 && fabs(over) > room && over * value < 0)
+                fail_msg("seed %" PRIu64 ": f = %g at (%.9g, %.9g, %.9g), piece %d of %d has %g by "
+                         "the room of %g, in a cube of half %g",
+                         seed, value, p.x, p.y, p.z, n, f.count, over, room, half);
+            seen->pieces += there > 0 && fabs(over) > room;
+        }
+        if (!any)
+            fail_msg("seed %" PRIu64 ": no piece at (%.9g, %.9g, %.9g) in a cube of half %g", seed,
+                     p.x, p.y, p.z, half);
+    }
+}
+
+static bool find_solid(const mesh_case *m, const double c[3], double half, csg_graph *out,
+                       int *count)
+{
+    csg_taylor_pieces f;
+    if (!csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), &f))
+        return false;
+    *count = f.count;
+    return csg_graph_find(&f, half, 0, out);
+}
+
+/* The volume in the cube and that of its parts do not differ by more than they are off. */
+static void try_volume(const mesh_case *m, const double c[3], double half, tally *seen)
+{
+    enum { SIDE = 4 };
+    csg_graph whole, part;
+    double volume = 0, error = 0, small = half / SIDE;
+    int count, ignored;
+    if (!find_solid(m, c, half, &whole, &count) || count < 2)
+        return;
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
+        const int of[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        double at[3];
+        for (int k = 0; k < 3; k++)
+            at[k] = c[k] + small * (2 * of[k] + 1 - SIDE);
+        if (!find_solid(m, at, small, &part, &ignored))
+            return;
+        volume += part.integrals[0];
+        error += part.error;
+    }
+    if (fabs(volume - whole.integrals[0]) > whole.error + error + 1e-12 * half * half * half)
+        fail_msg("seed %" PRIu64 ": %.9g in a cube of half %g at (%.9g, %.9g, %.9g) is off by %g, "
+                 "by %g at most",
+                 seed, whole.integrals[0], half, c[0], c[1], c[2], volume - whole.integrals[0],
+                 whole.error + error);
+    seen->volumes++;
+}
+
 /* Cubes near the surface, centres and halves exact as floats. */
 static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
 {
@@ -165,6 +248,9 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
         c[2] = half * round(p.z / half);
         try_cube(m, random, c, half, seen);
         try_gradients(m, random, c, half, seen);
+        try_pieces(m, random, c, half, seen);
+        if (i % 4 == 0)
+            try_volume(m, c, half, seen);
     }
 }
 
@@ -186,6 +272,7 @@ static void models_hold(void **state)
     }
     assert_true(seen.known > 1000 * test_times && seen.bent > 500 * test_times);
     assert_true(seen.near > 5000 * test_times && seen.turned > 1000 * test_times);
+    print_message("pieces %u volumes %u\n", seen.pieces, seen.volumes);
 }
 
 /* Two of every kind of primitive, turned, with a blend that the models know. */
@@ -217,6 +304,7 @@ static void blends_hold(void **state)
         mesh_case_end(&m);
     }
     assert_true(seen.known > 5000 * test_times && seen.near > 30000 * test_times);
+    print_message("pieces %u volumes %u\n", seen.pieces, seen.volumes);
     assert_true(seen.turned > 10000 * test_times);
 }
 

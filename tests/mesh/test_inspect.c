@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "mesh/inspect.h"
+#include "mesh/small_meshes.h"
 
 static void assert_near(double value, double expected, double tolerance)
 {
@@ -46,14 +47,6 @@ static void assert_closed(const csgm_mesh_check *check)
 }
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-/* A unit cube, corners numbered by bits x y z, outward. */
-static const float cube_positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0,
-                                       0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1};
-static const uint32_t cube_indices[] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                                        2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-static const float tetra_positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-static const uint32_t tetra_indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
 static void test_cube(void **state)
 {

@@ -242,7 +242,8 @@ void csg_feature_triangles(const csg_marching *m, const csg_block *block,
                            bool split, csg_marching_room *room, const csg_marching_output *out)
 {
     csg_marching_number(m, block, room);
-    place_moved(m, block, store, features, room, out);
+    if (out->positions)
+        place_moved(m, block, store, features, room, out);
     emitter e = {.m = m,
                  .block = block,
                  .store = store,

@@ -13,6 +13,7 @@ void csg_feature_vertices(const csg_marching *marching, const csg_block *block,
                           const csg_feature_store *store, const csg_feature_block *features,
                           bool split, csg_marching_room *room, const csg_marching_output *out,
                           float *scratch, size_t scratch_floats);
+/* Indices; vertices that have moved go to their places where there are positions. */
 void csg_feature_triangles(const csg_marching *marching, const csg_block *block,
                            const csg_feature_store *store, const csg_feature_block *features,
                            bool split, csg_marching_room *room, const csg_marching_output *out);

@@ -26,9 +26,22 @@ static csg_box box_of(const float *positions, uint64_t count, csg_box box)
  * loose triangles, 9 floats each. */
 typedef struct places {
     csg_marching_output arrays;
-    float *corners; /* NULL: in arrays */
+    float *corners;   /* NULL: in arrays */
+    uint32_t *joined; /* as csg_mesh_run.joined, where it is not in arrays; or NULL */
     const csg_block *first;
 } places;
+
+/* The indices of a block's triangles, without copies of vertices. */
+static void join_block(const csg_mesh_output *o, const csg_block *block,
+                       const csg_feature_block *features, csg_marching_room *room, uint32_t *joined)
+{
+    const csg_marching *m = &o->workers->marching;
+    csg_marching_output out = {.indices = joined};
+    if (features)
+        csg_feature_triangles(m, block, &o->creases->store, features, false, room, &out);
+    else
+        csg_marching_triangles(m, block, room, &out);
+}
 
 static void make_block(csg_mesh_output *o, csg_mesh_worker *self, const csg_block *block,
                        const places *to)
@@ -71,6 +84,8 @@ static void make_block(csg_mesh_output *o, csg_mesh_worker *self, const csg_bloc
             self->bounds = box_of(out.positions, block->vertex_count, self->bounds);
         gradients = out.normals ? block->vertex_count : 0;
     }
+    if (to->joined)
+        join_block(o, block, features, room, to->joined + 3 * t);
     self->point_evaluations += points;
     self->gradient_evaluations += gradients;
     self->primitive_evaluations += (points + gradients) * (block->node_count + 1) / 2;
@@ -99,7 +114,14 @@ static bool reserve_run(const csg_mesh_output *o, csg_run_buffer *buffer, csg_me
 {
     csg_memory *memory = &o->watch->context->memory;
     size_t vertices = (size_t)run->vertex_count, triangles = (size_t)run->triangle_count;
-    if (o->receiver->wants_corners) {
+    bool corners = o->receiver->wants_corners, joined = o->receiver->wants_joined;
+    if (joined && (corners || o->creases->split)) {
+        if (!csg_memory_reserve(memory, (void **)&buffer->joined, &buffer->joined_capacity,
+                                3 * triangles, sizeof(uint32_t)))
+            return false;
+        run->joined = to->joined = buffer->joined;
+    }
+    if (corners) {
         if (!csg_memory_reserve(memory, (void **)&buffer->corners, &buffer->corner_capacity,
                                 9 * triangles, sizeof(float)))
             return false;
@@ -120,6 +142,8 @@ static bool reserve_run(const csg_mesh_output *o, csg_run_buffer *buffer, csg_me
     run->normals = to->arrays.normals = buffer->normals;
     run->colors = to->arrays.colors = buffer->colors;
     run->indices = to->arrays.indices = buffer->indices;
+    if (joined && !run->joined)
+        run->joined = run->indices;
     return true;
 }
 
@@ -174,7 +198,11 @@ csgm_status csg_mesh_begin_output(csg_mesh_output *o, const csg_mesh_slabs *slab
                                   .triangle_count = slabs->triangle_count,
                                   .normals = in->options->normals != CSGM_NORMALS_NONE,
                                   .colors = csg_mesh_gets_colors(in),
-                                  .origin = csg_mesh_origin_of(in)};
+                                  .split = o->creases->split,
+                                  .origin = csg_mesh_origin_of(in),
+                                  .bounds = in->bounds};
+    o->counts.bounds.min = csg_vec3_sub(o->counts.bounds.min, o->counts.origin);
+    o->counts.bounds.max = csg_vec3_sub(o->counts.bounds.max, o->counts.origin);
     if (o->receiver)
         return o->receiver->begin(o->receiver->user, &o->counts);
     csgm_status status = csg_mesh_create(in->context, own.vertices, own.triangles,

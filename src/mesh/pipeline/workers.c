@@ -82,6 +82,7 @@ static void release_run(csg_memory *memory, csg_run_buffer *run)
     csg_memory_release(memory, run->colors, run->color_capacity);
     csg_memory_release(memory, run->indices, run->index_capacity * sizeof(uint32_t));
     csg_memory_release(memory, run->corners, run->corner_capacity * sizeof(float));
+    csg_memory_release(memory, run->joined, run->joined_capacity * sizeof(uint32_t));
 }
 
 void csg_mesh_workers_release(csg_mesh_workers *w)

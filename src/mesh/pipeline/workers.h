@@ -14,7 +14,9 @@ typedef struct csg_run_buffer {
     uint8_t *colors;
     uint32_t *indices;
     float *corners;
-    size_t position_capacity, normal_capacity, color_capacity, index_capacity, corner_capacity;
+    uint32_t *joined;
+    size_t position_capacity, normal_capacity, color_capacity, index_capacity, corner_capacity,
+        joined_capacity;
 } csg_run_buffer;
 
 /* One thread's part. */

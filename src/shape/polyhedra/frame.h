@@ -9,8 +9,7 @@
 #include <stdint.h>
 
 #include "base/geometry.h"
-
-__extension__ typedef __int128 csg_int128;
+#include "base/int128.h"
 
 typedef struct csg_triangle_frame {
     csg_vec3 center;

@@ -227,7 +227,7 @@ static int write_stream(maker *m)
     }
     uint64_t counts[2];
     int status = cli_work_mesh_file(&m->app, &m->work, path, csgm_format_from_name(format),
-                                    &options, counts);
+                                    &options, counts, NULL);
     m->result->triangles = counts[1];
     return status == CLI_DONE ? add_output(m, path, format, NULL) : status;
 }

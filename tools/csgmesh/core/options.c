@@ -476,6 +476,8 @@ bool cli_options_parse(cli_options *options, cli_command command, int argc, char
         if (!good)
             return false;
     }
+    if (options->stats_full && !options->stats)
+        options->stats = "-";
     return true;
 }
 

@@ -155,14 +155,19 @@ int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write
 }
 
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
-                       const csgm_write_options *write_options, uint64_t counts[2])
+                       const csgm_write_options *write_options, uint64_t counts[2],
+                       csgm_mesh_figures *figures)
 {
     csgm_mesh_options options = mesh_options(app, work);
     uint32_t errors = app->console.errors;
     csgm_status status = work->field ? CSGM_OK : compile(app, work);
     counts[0] = counts[1] = 0;
     work->stats = csgm_mesh_stats_default();
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && figures)
+        status =
+            csgm_mesh_build_file_figures(app->context, work->scene, work->field, &options, path,
+                                         format, write_options, counts, &work->stats, figures);
+    else if (status == CSGM_OK)
         status = csgm_mesh_build_file(app->context, work->field, &options, path, format,
                                       write_options, counts, &work->stats);
     cli_console_end_progress(&app->console);

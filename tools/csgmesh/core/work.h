@@ -5,6 +5,7 @@
 #define CLI_WORK_H
 
 #include "core/cli.h"
+#include "csgmesh/figures.h"
 
 typedef struct cli_work {
     csgm_scene *scene;
@@ -35,10 +36,12 @@ int cli_work_mesh(cli_app *app, cli_work *work);
  * coarser than the one before ends them. */
 int cli_work_mesh_levels(cli_app *app, cli_work *work, csgm_write_options *write_options);
 /* Straight into a file, without the whole mesh in memory where the format allows it; work->mesh
- * stays NULL. counts: vertices, triangles. A mesh without triangles writes nothing and is an error.
+ * stays NULL. counts: vertices, triangles. figures: NULL, they are not wanted. A mesh without
+ * triangles writes nothing and is an error.
  */
 int cli_work_mesh_file(cli_app *app, cli_work *work, const char *path, csgm_format format,
-                       const csgm_write_options *write_options, uint64_t counts[2]);
+                       const csgm_write_options *write_options, uint64_t counts[2],
+                       csgm_mesh_figures *figures);
 void cli_work_release(cli_work *work);
 
 #endif

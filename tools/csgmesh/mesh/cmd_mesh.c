@@ -84,10 +84,12 @@ static bool is_streamed(const cli_options *options, size_t index)
 
 static int mesh_to_file(cli_app *app, cli_work *work, cli_report *report)
 {
+    csgm_mesh_figures *figures = app->options->stats ? &report->figures : NULL;
     csgm_write_options write_options = cli_outputs_options(app, app->options->operands.items[0]);
     uint64_t counts[2];
-    int status = cli_work_mesh_file(app, work, app->options->outputs.items[0],
-                                    cli_outputs_format(app->options, 0), &write_options, counts);
+    int status =
+        cli_work_mesh_file(app, work, app->options->outputs.items[0],
+                           cli_outputs_format(app->options, 0), &write_options, counts, figures);
     report->vertices = counts[0];
     report->triangles = counts[1];
     status = name_outputs(app, status);
@@ -101,24 +103,33 @@ static int mesh_to_file(cli_app *app, cli_work *work, cli_report *report)
     return status;
 }
 
-/* With statistics a mesh is wanted in memory; one that is too large for it goes straight to its
- * file, where it can, and they say less. */
+/* Into a file that takes the mesh while it is made, so that it need not be in memory. */
+static bool can_be_streamed(const cli_options *options)
+{
+    return can_go_straight_to_file(options) && has_equal_cells(options) && is_streamed(options, 0);
+}
+
+static int stream_with_statistics(cli_app *app, cli_work *work, cli_report *report)
+{
+    int status = mesh_to_file(app, work, report);
+    report->write_s = work->stats.mesh_s; /* one and the same */
+    report->peak_rss_bytes = cli_peak_rss_bytes();
+    return status == CLI_DONE ? cli_statistics_write(app, work, report) : status;
+}
+
+/* With full statistics a mesh is wanted in memory; one that is too large for it goes straight to
+ * its file, where it can, and they say less. */
 static int mesh_in_memory(cli_app *app, cli_work *work, cli_report *report)
 {
     const cli_options *options = app->options;
-    bool has_other_way = options->stats && can_go_straight_to_file(options) &&
-                         has_equal_cells(options) && is_streamed(options, 0);
+    bool has_other_way = options->stats && can_be_streamed(options);
     app->does_without_memory = has_other_way;
     int status = cli_work_mesh(app, work);
     app->does_without_memory = false;
     if (status == CLI_DONE)
         return write_all(app, work, report);
-    if (!has_other_way || !app->ran_out_of_memory)
-        return status;
-    status = mesh_to_file(app, work, report);
-    report->write_s = work->stats.mesh_s; /* one and the same */
-    report->peak_rss_bytes = cli_peak_rss_bytes();
-    return status == CLI_DONE ? cli_statistics_write(app, work, report) : status;
+    return has_other_way && app->ran_out_of_memory ? stream_with_statistics(app, work, report)
+                                                   : status;
 }
 
 /* After E0901: what takes less memory than that which was asked for. */
@@ -183,7 +194,7 @@ static int write_cells(cli_app *app, int status)
 static int mesh_scene(cli_app *app, const char *path)
 {
     cli_work work = {0};
-    cli_report report = {0};
+    cli_report report = {.figures = csgm_mesh_figures_default()};
     app->flat = cli_drawings_flat(app->options);
     int status = cli_work_load(app, &work, path);
     if (status == CLI_DONE)
@@ -200,6 +211,8 @@ static int mesh_scene(cli_app *app, const char *path)
         is_meshed = false;
     } else if (is_meshed && can_go_straight_to_file(app->options) && !app->options->stats) {
         status = mesh_to_file(app, &work, &report);
+    } else if (is_meshed && can_be_streamed(app->options) && !app->options->stats_full) {
+        status = stream_with_statistics(app, &work, &report);
     } else if (is_meshed) {
         status = mesh_in_memory(app, &work, &report);
     }

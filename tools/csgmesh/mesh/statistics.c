@@ -66,9 +66,11 @@ static void put_distance(cli_json *json, const csgm_mesh_stats *stats)
 static void put_mesh(cli_json *json, const cli_work *work, const cli_report *report)
 {
     cli_json_open(json, "mesh", '{');
-    if (report->is_checked) {
-        csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
-        csgm_file_figures mesh = cli_facts_of_mesh(&view, &report->check);
+    if (report->figures.is_checked) {
+        csgm_file_figures mesh = csgm_file_figures_default();
+        mesh.vertices = report->vertices;
+        mesh.triangles = report->triangles;
+        mesh.check = report->figures.check;
         cli_facts_mesh_json(json, &mesh);
     } else {
         cli_json_count(json, "vertices", report->vertices);
@@ -81,18 +83,19 @@ static void put_mesh(cli_json *json, const cli_work *work, const cli_report *rep
 
 static void put_quality(cli_json *json, const cli_work *work, const cli_report *report)
 {
+    const csgm_mesh_figures *figures = &report->figures;
     cli_json_open(json, "quality", '{');
-    if (work->mesh) {
-        cli_json_number(json, "max_abs_field", report->max_abs_field);
-        cli_json_count(json, "vertices_measured", report->vertices_measured);
+    if (figures->vertices_measured) {
+        cli_json_number(json, "max_abs_field", figures->max_abs_field);
+        cli_json_count(json, "vertices_measured", figures->vertices_measured);
     }
     if (work->stats.is_measured)
         put_distance(json, &work->stats);
-    if (report->is_checked) {
-        cli_json_number(json, "min_angle_deg", report->check.min_angle_deg);
-        cli_json_number(json, "max_aspect", report->check.max_aspect);
+    if (figures->is_checked) {
+        cli_json_number(json, "min_angle_deg", figures->check.min_angle_deg);
+        cli_json_number(json, "max_aspect", figures->check.max_aspect);
         cli_json_count(json, "degenerate",
-                       report->check.degenerate_triangles + report->check.zero_area_triangles);
+                       figures->check.degenerate_triangles + figures->check.zero_area_triangles);
     }
     cli_json_end(json, '}');
 }
@@ -112,8 +115,9 @@ static void put_times(cli_json *json, const cli_work *work, const cli_report *re
     cli_json_end(json, '}');
 }
 
-/* What each file holds, by reading it: formats round, weld and split. Without the room for that,
- * nor for going through it in runs, it has its name alone. false: it cannot be read (reported). */
+/* A file's name and, in full, what it holds, by reading it: formats round, weld and split. Without
+ * the room for that, nor for going through it in runs, it has its name alone. false: it cannot be
+ * read (reported). */
 static bool put_file(cli_json *json, cli_app *app, size_t index)
 {
     const char *path = app->options->outputs.items[index];
@@ -123,12 +127,14 @@ static bool put_file(cli_json *json, cli_app *app, size_t index)
     if (strcmp(path, "-") == 0 || !csgm_format_available(format, true) ||
         (stat(path, &info) == 0 && !S_ISREG(info.st_mode)))
         return true;
-    csgm_status status = csgm_mesh_file_inspect(app->context, path, format, &mesh);
+    bool is_read = app->options->stats_full;
+    csgm_status status =
+        is_read ? csgm_mesh_file_inspect(app->context, path, format, &mesh) : CSGM_OK;
     if (status == CSGM_OK || status == CSGM_ERR_MEMORY) {
         cli_json_open(json, NULL, '{');
         cli_json_string(json, "name", path);
         cli_json_string(json, "format", csgm_format_name(format));
-        if (status == CSGM_OK)
+        if (is_read && status == CSGM_OK)
             cli_facts_mesh_json(json, &mesh);
         cli_json_end(json, '}');
     } else {
@@ -162,27 +168,41 @@ static bool put_statistics(FILE *out, cli_app *app, const cli_work *work, const 
     return all_read;
 }
 
-/* What needs the whole mesh in memory, where it is there. */
+/* The figures of a mesh that has gone by and is no closed manifold are those of its file. */
+static csgm_status measure_file(cli_app *app, cli_report *report)
+{
+    csgm_file_figures mesh = csgm_file_figures_default();
+    csgm_status status = csgm_mesh_file_inspect(app->context, app->options->outputs.items[0],
+                                                cli_outputs_format(app->options, 0), &mesh);
+    report->figures.is_checked = status == CSGM_OK;
+    report->figures.check = mesh.check;
+    return status == CSGM_ERR_MEMORY ? CSGM_OK : status;
+}
+
+/* What is not known yet. */
 static csgm_status measure(cli_app *app, const cli_work *work, cli_report *report)
 {
-    if (!work->mesh)
+    csgm_mesh_figures *figures = &report->figures;
+    if (figures->is_checked)
         return CSGM_OK;
+    if (!work->mesh)
+        return measure_file(app, report);
     csgm_mesh_view view = csgm_mesh_get_view(work->mesh);
     report->vertices = view.vertex_count;
     report->triangles = view.triangle_count;
-    csgm_status status = csgm_mesh_inspect(app->context, &view, &report->check);
-    report->is_checked = status == CSGM_OK;
-    report->max_abs_field = csgm_mesh_max_abs_field(work->scene, &view, &report->vertices_measured);
+    csgm_status status = csgm_mesh_inspect(app->context, &view, &figures->check);
+    figures->is_checked = status == CSGM_OK;
+    figures->max_abs_field =
+        csgm_mesh_max_abs_field(work->scene, &view, &figures->vertices_measured);
     return status == CSGM_ERR_MEMORY ? CSGM_OK : status;
 }
 
 int cli_statistics_write(cli_app *app, const cli_work *work, cli_report *report)
 {
     cli_text text;
-    bool mesh_is_too_large = app->ran_out_of_memory;
     app->does_without_memory = true;
     csgm_status status = measure(app, work, report);
-    mesh_is_too_large |= app->ran_out_of_memory;
+    bool mesh_is_too_large = !report->figures.is_checked;
     app->ran_out_of_memory = false;
     bool all_read =
         status != CSGM_OK || !cli_text_open(&text) || put_statistics(text.out, app, work, report);
@@ -193,9 +213,11 @@ int cli_statistics_write(cli_app *app, const cli_work *work, cli_report *report)
         return cli_exit_status(status);
     if (app->ran_out_of_memory)
         cli_console_say(&app->console, CSGM_WARNING, "raise the limit with --max-memory",
-                        "--stats: area, volume, topology and angles of a mesh that is too large "
+                        "--stats: area, volume, topology and angles of a %s that is too large "
                         "for the memory were not found out%s",
-                        files_are_too_large ? "" : ", but those of its file");
+                        mesh_is_too_large ? "mesh" : "file",
+                        app->options->stats_full && !files_are_too_large ? ", but those of its file"
+                                                                         : "");
     int written = cli_text_write(app, &text, app->options->stats);
     return all_read ? written : CLI_TROUBLE;
 }

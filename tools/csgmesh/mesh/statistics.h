@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * What --stats says of a run of `mesh`. What needs the whole mesh in memory (area, volume,
- * topology, angles) is left out, with a warning, where memory has no room for it: a limit ends no
- * run whose files are written.
+ * What --stats says of a run of `mesh`. Area, volume, topology and angles come with a mesh that
+ * goes by into its file, else from the mesh in memory; where memory has no room for that, and none
+ * for going through the file, they are left out, with a warning: a limit ends no run whose files
+ * are written.
  */
 #ifndef CLI_STATISTICS_H
 #define CLI_STATISTICS_H
@@ -9,11 +10,8 @@
 #include "core/work.h"
 
 typedef struct cli_report {
-    csgm_mesh_check check; /* where it is_checked */
-    bool is_checked;
+    csgm_mesh_figures figures;
     uint64_t vertices, triangles;
-    double max_abs_field;
-    uint64_t vertices_measured; /* for max_abs_field */
     double write_s, total_s;
     uint64_t peak_rss_bytes; /* of the work, before the mesh was inspected */
 } cli_report;

@@ -199,7 +199,7 @@ static int make_file(cli_app *app, cli_work *work, cli_report *report)
     if (cli_ranks_most(status) != CLI_DONE)
         return CLI_TROUBLE;
     status = cli_work_mesh_file(app, work, app->options->outputs.items[0],
-                                cli_outputs_format(app->options, 0), &options, counts);
+                                cli_outputs_format(app->options, 0), &options, counts, NULL);
     if (status == CLI_DONE && cli_app_is_refused(app))
         status = CLI_INPUT_AT_FAULT;
     int agreed = cli_ranks_most(status);

@@ -9,9 +9,10 @@
 #include "csgmesh/csgmesh.h"
 #include "manual/page.h"
 
-static const cli_option_id refused[] = {CLI_OPTION_watch,   CLI_OPTION_lod,     CLI_OPTION_cells,
-                                        CLI_OPTION_depfile, CLI_OPTION_trace,   CLI_OPTION_smooth,
-                                        CLI_OPTION_roots,   CLI_OPTION_sandbox, CLI_OPTION_summary};
+static const cli_option_id refused[] = {
+    CLI_OPTION_watch,   CLI_OPTION_lod,       CLI_OPTION_cells, CLI_OPTION_depfile,
+    CLI_OPTION_trace,   CLI_OPTION_smooth,    CLI_OPTION_roots, CLI_OPTION_sandbox,
+    CLI_OPTION_summary, CLI_OPTION_stats_full};
 enum { REFUSED = sizeof refused / sizeof *refused };
 
 static bool is_refused(cli_option_id option)
