@@ -360,10 +360,10 @@ static content content_of(const walk *w, worker *s, cube *q)
     if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
         gradients.most < least_depth(w))
         return NOTHING; /* or a face that solids share */
-    double leaning = leaning_of(&gradients.balls);
+    double leaning = leaning_of(&gradients.level);
     q->is_sheet = leaning >= LEANING;
     q->is_bent = leaning < LEVEL;
-    return leaning >= (gradients.balls.count > 1 ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+    return leaning >= (gradients.level.count > 1 ? CREASED : SMOOTH) ? SHEET : ANYTHING;
 }
 
 /* A sheet that has a place near the mesh. Where it turns at some distance from the mesh it is

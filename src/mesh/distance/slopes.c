@@ -335,8 +335,53 @@ static double round_value(const operand *of, which what, uint32_t count, double 
     return turn * csg_slopes_round(values, count, w);
 }
 
-/* Shares are in the proportions of (f_i - F + w)_+. Operands are mixed one after the other, each
- * with the mixture of those before it. */
+/* Of operands in the proportions of these weights. They are mixed one after the other, each with
+ * the mixture of those before it. False: no bound is known. */
+static bool mix_round(const operand *of, const range *weights, uint32_t count, operand *sum)
+{
+    range total = {0, 0}; /* of the weights so far */
+    for (uint32_t i = 0; i < count; i++) {
+        range weight = weights[i];
+        if (weight.high <= 0)
+            continue;
+        range share = {total.low / (total.low + weight.high),
+                       total.high / (total.high + weight.low)};
+        if (!(total.high > 0))
+            *sum = of[i];
+        else if (!csg_slopes_mix(sum, &of[i], share, false))
+            return false;
+        total = (range){total.low + weight.low, total.high + weight.high};
+    }
+    return total.high > 0;
+}
+
+/* The same where the whole field is zero: there the weights' squares add up to w^2, and each is
+ * what its operand is anyway, which in a thin wall says much more than how far operands part. */
+static void find_level(walker *w, const operand *of, const range *weights, uint32_t count,
+                       double turn, double size)
+{
+    range at_zero[CSG_SLOPES_NODES];
+    double doubt = 1e-5 * size, least = 0, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double low = turn * (turn > 0 ? of[i].least : of[i].most) - of[i].doubt - doubt;
+        double high = turn * (turn > 0 ? of[i].most : of[i].least) + of[i].doubt + doubt;
+        at_zero[i] = (range){fmax(0, low + size), fmax(0, fmin(size + doubt, high + size))};
+        least += at_zero[i].low * at_zero[i].low;
+        most += at_zero[i].high * at_zero[i].high;
+    }
+    double square = size * size, slack = 4 * doubt * size;
+    for (uint32_t i = 0; i < count; i++) {
+        double low = at_zero[i].low, high = at_zero[i].high;
+        double above = square - slack - (most - high * high);
+        double below = square + slack - (least - low * low);
+        at_zero[i].low = fmax(fmax(low, sqrt(fmax(above, 0))), weights[i].low);
+        at_zero[i].high = fmin(fmin(high, sqrt(fmax(below, 0))), weights[i].high);
+        at_zero[i].high = fmax(at_zero[i].high, at_zero[i].low); /* nothing is zero, but rounding */
+    }
+    w->has_level = mix_round(of, at_zero, count, &w->level);
+}
+
+/* Shares are in the proportions of (f_i - F + w)_+. */
 static bool join_round(walker *w, const csg_tape_node *node)
 {
     double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
@@ -352,25 +397,18 @@ static bool join_round(walker *w, const csg_tape_node *node)
         for (uint32_t k = i + 1; k < node->arity; k++)
             change = fmax(change, change_of(w, &of[i], &of[k]));
     }
-    operand sum;
-    range total = {0, 0}; /* of the weights so far */
-    bool done = true;
-    for (uint32_t i = 0; i < node->arity && done; i++) {
+    double reach = change + 2 * doubt + 1e-5 * size;
+    range weights[CSG_SLOPES_NODES];
+    for (uint32_t i = 0; i < node->arity; i++) {
         double at = turn * (of[i].value - value) + size;
-        double reach = change + 2 * doubt + 1e-5 * size;
-        range weight = {fmax(0, at - reach), at + reach};
-        if (weight.high <= 0)
-            continue;
-        range share = {total.low / (total.low + weight.high),
-                       total.high / (total.high + weight.low)};
-        if (total.high > 0)
-            done = csg_slopes_mix(&sum, &of[i], share, false);
-        else
-            sum = of[i];
-        total = (range){total.low + weight.low, total.high + weight.high};
+        weights[i] = (range){fmax(0, at - reach), at + reach};
     }
+    operand sum;
+    bool done = mix_round(of, weights, node->arity, &sum);
+    if (node == &w->tape->nodes[w->tape->count - 1])
+        find_level(w, of, weights, node->arity, turn, size);
     w->top -= node->arity - 1;
-    if (!done || !(total.high > 0))
+    if (!done)
         return false;
     of[0] = sum;
     of[0].value = value;
@@ -608,6 +646,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     w.scratch = scratch;
     w.scratch_floats = scratch_floats;
     w.top = 0;
+    w.has_level = false;
     for (int k = 0; k < CSG_OCTANTS; k++) {
         csg_vec3 p = k < 3 ? region->triangle[k] : region->c;
         x[k] = (float)p.x;
@@ -629,6 +668,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     out->most = w.stack[0].most;
     out->stray = find_stray(&w.stack[0], out->middle);
     out->doubt = w.stack[0].doubt;
+    out->level = w.has_level ? w.level.balls : w.stack[0].balls;
     return out->balls.count > 0;
 }
 

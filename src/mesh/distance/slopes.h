@@ -31,11 +31,11 @@ typedef struct csg_gradients_region {
 } csg_gradients_region;
 
 typedef struct csg_gradients {
-    csg_cone_balls balls;
-    double value;       /* of the field, at c */
-    double low, high;   /* over the triangle */
-    double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
-    double longest;     /* of all gradients */
+    csg_cone_balls balls, level; /* of all gradients; of those where the field is zero */
+    double value;                /* of the field, at c */
+    double low, high;            /* over the triangle */
+    double least, most;          /* over the region, but for rounding: nowhere less, nowhere more */
+    double longest;              /* of all gradients */
     bool exceeds; /* they may be combinations of the balls with weights of more than 1 in all */
     double stray; /* no gradient is farther from `middle`; INFINITY: not known */
     double middle[3];

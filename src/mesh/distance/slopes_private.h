@@ -27,6 +27,8 @@ typedef struct csg_slopes_walker {
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
     uint32_t top;
+    csg_slopes_operand level; /* the field's gradients where it is zero, if has_level */
+    bool has_level;
 } csg_slopes_walker;
 
 typedef struct csg_slopes_range {
