@@ -8,6 +8,7 @@
 #include "mesh/distance/slopes.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
+#include "scene/operators/rule.h"
 #include "scene/random_formula.h"
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -469,6 +470,39 @@ static void cones_of_rules_hold(void **state)
     try_kind("rules", ruled, 96, 400);
 }
 
+/* Of few solids, so that gradients' bounds are found and not only tried. */
+static void ranges_of_smooth_rules_hold(void **state)
+{
+    (void)state;
+    const csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE, CSG_NODE_INTERSECTION};
+    csg_random random = {.state = 104};
+    uint32_t found = 0;
+    for (int i = 0; i < 24; i++) {
+        csg_rule rule = csg_rule_standard(i % 2 ? CSG_BLEND_EXTERIOR : CSG_BLEND_INTERIOR);
+        for (int k = 0; k < 2; k++)
+            rule.parameters[k] *= 0.5;
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_blend blend = csg_build_rule(&c.builder, &rule);
+        csg_node_id root = csg_build_ball(&c.builder, 1, NOWHERE);
+        for (int k = 0; k < 1 + i % 3; k++) {
+            csg_affine beside = csg_affine_translate(csg_vec3_scale(test_direction(&random), 0.9));
+            csg_node_id other = i % 4 ? csg_build_ball(&c.builder, 0.7, NOWHERE)
+                                      : make_any_primitive(&c, i % 9, &random);
+            other = csg_build_transform(&c.builder, &beside, other, NOWHERE);
+            root = joined(&c, operators[i % 3], blend, root, other);
+        }
+        mesh_case_compile(&c, root);
+        for (int k = 0; k < 40; k++) {
+            csg_vec3 at = test_point(&random, 1.2);
+            double radius = exp(csg_random_uniform(&random, -5, -1));
+            found += try_range(c.scene, c.field, &random, at, radius);
+        }
+        mesh_case_end(&c);
+    }
+    assert_true(found > 700);
+}
+
 /* ---- where the field is zero ------------------------------------------------------------------ */
 
 static csg_gradients gradients_in_cube(const csgm_field *field, csg_vec3 at, double half,
@@ -600,6 +634,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(cones_of_rules_hold),
         cmocka_unit_test(slopes_at_zero_hold),
         cmocka_unit_test(one_side_of_a_wall_is_a_sheet),
+        cmocka_unit_test(ranges_of_smooth_rules_hold),
     };
     if (argc > 1)
         scene_count = (uint32_t)strtoul(argv[1], NULL, 10);

@@ -244,6 +244,8 @@ static double least_of_larger(const walker *w, const operand *a, const operand *
  * sign. */
 static bool join_operands(walker *w, const csg_tape_node *node)
 {
+    if (csg_blend_is_rule(node->join_blend))
+        return csg_slopes_join_rule(w, node);
     const float *parameters = w->tape->parameters + node->join_parameters;
     float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     operand *a = &w->stack[w->top - 2], *b = &w->stack[w->top - 1];
@@ -269,8 +271,6 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         a->doubt += b->doubt;
         return done;
     }
-    if (node->join_blend >= CSG_BLEND_COUNT)
-        return false;
     range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
     double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);
     double least = turn * least_of_larger(w, a, b, turn);
@@ -426,7 +426,7 @@ static bool join_round(walker *w, const csg_tape_node *node)
 /* A ball around all gradients: in the balls' hull, or longer combinations of these of at most that
  * length. Those that have an axis in common are within a circular cone around it, as all they
  * combine to, and climb along it by no less than they do. */
-static bool enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out)
+bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out)
 {
     csg_cone cone;
     double tangent = 0;
@@ -523,7 +523,8 @@ static void join_faces(operand *leaf)
 {
     static const double NARROW = 0.35; /* of the longest gradient */
     csg_cone_ball one;
-    if (!enclose(&leaf->balls, leaf->longest, &one) || !(one.spread <= NARROW * leaf->longest))
+    if (!csg_slopes_enclose(&leaf->balls, leaf->longest, &one) ||
+        !(one.spread <= NARROW * leaf->longest))
         return;
     leaf->balls.items[0] = one;
     leaf->balls.count = 1;
@@ -532,7 +533,7 @@ static void join_faces(operand *leaf)
 }
 
 /* How much it can change within the region. */
-static double span_of_leaf(const walker *w, const operand *leaf)
+double csg_slopes_span(const walker *w, const operand *leaf)
 {
     double most = 0;
     if (leaf->faces || leaf->stretched || leaf->balls.has_edges)
@@ -565,7 +566,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
     find_range(w, node, low, high, leaf);
-    double span = span_of_leaf(w, leaf);
+    double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
     leaf->most = leaf->value + span;
     return true;
@@ -586,6 +587,8 @@ static bool walk(walker *w, const float *low, const float *high)
             known = join_round(w, node);
         else if (csg_op_is_fillet(node->op))
             known = csg_slopes_join_fillet(w, node);
+        else if (known && csg_blend_is_rule(node->blend))
+            csg_slopes_end_rule(w, node);
         if (!known || (node->join && !join_operands(w, node)))
             return false;
     }
@@ -605,7 +608,7 @@ static double find_stray(const operand *root, double at[3])
     csg_cone_ball middle = {.at = {0, 0, 0}};
     double stray = INFINITY;
     if (balls->count && exceeds_hull(root)) {
-        stray = enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
+        stray = csg_slopes_enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
             for (int k = 0; k < 3; k++)

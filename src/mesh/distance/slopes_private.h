@@ -54,5 +54,16 @@ bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slop
                     bool is_sharp);
 /* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */
 bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
+/* A blend by a rule of lengths, of the two operands on top of the stack. What they become has no
+ * value until the operator ends. False: no bound is known. */
+bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node);
+void csg_slopes_end_rule(csg_slopes_walker *w, const csg_tape_node *node);
+
+/* A ball around all gradients. False: they have no axis in common. */
+bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
+/* How much an operand can change from c within the region. */
+double csg_slopes_span(const csg_slopes_walker *w, const csg_slopes_operand *o);
+/* The value at c of what a node is the root of. */
+double csg_slopes_value_of_node(const csg_slopes_walker *w, const csg_tape_node *node);
 
 #endif
