@@ -420,39 +420,6 @@ static bool join_round(walker *w, const csg_tape_node *node)
     return done;
 }
 
-/* ---- one ball for all --------------------------------------------------------------------------
- */
-
-/* A ball around all gradients: in the balls' hull, or longer combinations of these of at most that
- * length. Those that have an axis in common are within a circular cone around it, as all they
- * combine to, and climb along it by no less than they do. */
-bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out)
-{
-    csg_cone cone;
-    double tangent = 0;
-    if (!csg_cone_find_axis(balls, &cone))
-        return false;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const csg_cone_ball *ball = &balls->items[i];
-        double along = 0, square = 0;
-        for (int k = 0; k < 3; k++) {
-            along += cone.axis[k] * ball->at[k];
-            square += ball->at[k] * ball->at[k];
-        }
-        double across = sqrt(fmax(square - along * along, 0)) + ball->spread;
-        if (!(along - ball->spread >= 0.999 * cone.least))
-            return false;
-        tangent = fmax(tangent, across / (along - ball->spread));
-    }
-    double least = 0.999 * cone.least, most = fmax(longest, least);
-    double sine = tangent / sqrt(1 + tangent * tangent);
-    for (int k = 0; k < 3; k++)
-        out->at[k] = 0.5 * (least + most) * cone.axis[k];
-    out->spread =
-        sqrt(sine * sine * most * most + 0.25 * (most - least) * (most - least)) + 1e-6 * most;
-    return true;
-}
-
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -523,6 +490,9 @@ static void join_faces(operand *leaf)
 {
     static const double NARROW = 0.35; /* of the longest gradient */
     csg_cone_ball one;
+    for (uint32_t i = 1; i < leaf->balls.count; i++) /* no such ball holds both: most turn more */
+        if (apart(&leaf->balls.items[0], &leaf->balls.items[i]) > 2.01 * NARROW * leaf->longest)
+            return;
     if (!csg_slopes_enclose(&leaf->balls, leaf->longest, &one) ||
         !(one.spread <= NARROW * leaf->longest))
         return;
@@ -602,13 +572,16 @@ static bool exceeds_hull(const operand *root)
 }
 
 /* How far gradients are at most from the middle of the balls, which they are in the hull of. */
-static double find_stray(const operand *root, double at[3])
+static double find_stray(const operand *root, csg_gradients *out)
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
     double stray = INFINITY;
     if (balls->count && exceeds_hull(root)) {
-        stray = csg_slopes_enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
+        out->is_axis_known = true;
+        out->has_axis = csg_cone_find_axis(balls, &out->cone);
+        if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
+            stray = middle.spread;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
             for (int k = 0; k < 3; k++)
@@ -617,7 +590,7 @@ static double find_stray(const operand *root, double at[3])
         for (uint32_t i = 0; i < balls->count; i++)
             stray = fmax(stray, apart(&middle, &balls->items[i]));
     }
-    memcpy(at, middle.at, sizeof middle.at);
+    memcpy(out->middle, middle.at, sizeof middle.at);
     return stray;
 }
 
@@ -669,10 +642,21 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     out->high = w.stack[0].high;
     out->least = w.stack[0].least;
     out->most = w.stack[0].most;
-    out->stray = find_stray(&w.stack[0], out->middle);
+    out->is_axis_known = false;
+    out->stray = find_stray(&w.stack[0], out);
     out->doubt = w.stack[0].doubt;
-    out->level = w.has_level ? w.level.balls : w.stack[0].balls;
+    out->has_level = w.has_level;
+    if (w.has_level)
+        out->level = w.level.balls;
     return out->balls.count > 0;
+}
+
+bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)
+{
+    if (!gradients->is_axis_known)
+        return csg_cone_find_axis(&gradients->balls, out);
+    *out = gradients->cone;
+    return gradients->has_axis;
 }
 
 double csg_gradients_steepest(const csg_gradients *gradients)

@@ -59,7 +59,10 @@ bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
 bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node);
 void csg_slopes_end_rule(csg_slopes_walker *w, const csg_tape_node *node);
 
-/* A ball around all gradients. False: they have no axis in common. */
+/* A ball around all gradients, around the axis that they have in common. False: none is known. */
+bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis, double longest,
+                               csg_cone_ball *out);
+/* The same of any; false also where they have no axis in common. */
 bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
 /* How much an operand can change from c within the region. */
 double csg_slopes_span(const csg_slopes_walker *w, const csg_slopes_operand *o);
