@@ -173,7 +173,7 @@ static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v
                             const csg_gradients *gradients)
 {
     csg_cone cone;
-    if (!csg_cone_find_axis(&gradients->balls, &cone))
+    if (!csg_gradients_find_axis(gradients, &cone))
         return false;
     double least = cone.least * p->error - slack_of(p);
     double longest = fmin(gradients->longest, (double)s->tape.lipschitz);

@@ -201,16 +201,21 @@ static bool is_far_from_zero(const walk *w, const cube *q)
     return fabs(q->value) > q->steepest * q->half + q->doubt + noise_of(w);
 }
 
-/* How near all gradients are at least to one direction, of the steepest. */
-static double leaning_of(const csg_cone_balls *balls)
+/* How near all gradients are at least to one direction where the field is zero, of the steepest
+ * there. */
+static double leaning_of(const csg_gradients *gradients)
 {
     double steepest = 0;
     csg_cone cone;
+    bool has_level = gradients->has_level;
+    const csg_cone_balls *balls = has_level ? &gradients->level : &gradients->balls;
     for (uint32_t i = 0; i < balls->count; i++) {
         const double *g = balls->items[i].at;
         steepest = fmax(steepest, csg_vec3_norm(csg_vec3_make(g[0], g[1], g[2])));
     }
-    return csg_cone_find_axis(balls, &cone) ? cone.least / steepest : 0;
+    bool has_axis =
+        has_level ? csg_cone_find_axis(balls, &cone) : csg_gradients_find_axis(gradients, &cone);
+    return has_axis ? cone.least / steepest : 0;
 }
 
 /* ---- the walk ----------------------------------------------------------------------------------
@@ -345,6 +350,11 @@ static uint32_t find_turns(const walk *w, worker *s, const cube *q, place out[TU
     return count;
 }
 
+static bool has_several_balls(const csg_gradients *gradients)
+{
+    return (gradients->has_level ? gradients->level.count : gradients->balls.count) > 1;
+}
+
 typedef enum content { NOTHING, SHEET, ANYTHING } content;
 
 /* What the field's gradients say that there is in the cube. */
@@ -360,10 +370,10 @@ static content content_of(const walk *w, worker *s, cube *q)
     if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
         gradients.most < least_depth(w))
         return NOTHING; /* or a face that solids share */
-    double leaning = leaning_of(&gradients.balls);
+    double leaning = leaning_of(&gradients);
     q->is_sheet = leaning >= LEANING;
     q->is_bent = leaning < LEVEL;
-    return leaning >= (gradients.balls.count > 1 ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+    return leaning >= (has_several_balls(&gradients) ? CREASED : SMOOTH) ? SHEET : ANYTHING;
 }
 
 /* A sheet that has a place near the mesh. Where it turns at some distance from the mesh it is

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * What of the surface a mesh may have missed: the field's octree is walked again, cube by cube,
  * down to where a cube is near the mesh, or holds one sheet that is near the mesh (all gradients
- * within a cone; a wider one in each of its eight parts), or no surface. What is left is smaller
- * than the error; the places of the surface there are what the mesh must come near to beside its
- * own vertices: tips, thin sheets, drops between the points of the lattice.
+ * where the field is zero within a cone; a wider one in each of its eight parts), or no surface.
+ * What is left is smaller than the error; the places of the surface there are what the mesh must
+ * come near to beside its own vertices: tips, thin sheets, drops between the points of the lattice.
  */
 #ifndef CSG_MESH_DISTANCE_MISSED_H
 #define CSG_MESH_DISTANCE_MISSED_H

@@ -244,6 +244,8 @@ static double least_of_larger(const walker *w, const operand *a, const operand *
  * sign. */
 static bool join_operands(walker *w, const csg_tape_node *node)
 {
+    if (csg_blend_is_rule(node->join_blend))
+        return csg_slopes_join_rule(w, node);
     const float *parameters = w->tape->parameters + node->join_parameters;
     float n = parameters[CSG_OPERATOR_N], chi = parameters[CSG_OPERATOR_SUPPORT];
     operand *a = &w->stack[w->top - 2], *b = &w->stack[w->top - 1];
@@ -269,8 +271,6 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         a->doubt += b->doubt;
         return done;
     }
-    if (node->join_blend >= CSG_BLEND_COUNT)
-        return false;
     range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
     double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);
     double least = turn * least_of_larger(w, a, b, turn);
@@ -335,8 +335,53 @@ static double round_value(const operand *of, which what, uint32_t count, double 
     return turn * csg_slopes_round(values, count, w);
 }
 
-/* Shares are in the proportions of (f_i - F + w)_+. Operands are mixed one after the other, each
- * with the mixture of those before it. */
+/* Of operands in the proportions of these weights. They are mixed one after the other, each with
+ * the mixture of those before it. False: no bound is known. */
+static bool mix_round(const operand *of, const range *weights, uint32_t count, operand *sum)
+{
+    range total = {0, 0}; /* of the weights so far */
+    for (uint32_t i = 0; i < count; i++) {
+        range weight = weights[i];
+        if (weight.high <= 0)
+            continue;
+        range share = {total.low / (total.low + weight.high),
+                       total.high / (total.high + weight.low)};
+        if (!(total.high > 0))
+            *sum = of[i];
+        else if (!csg_slopes_mix(sum, &of[i], share, false))
+            return false;
+        total = (range){total.low + weight.low, total.high + weight.high};
+    }
+    return total.high > 0;
+}
+
+/* The same where the whole field is zero: there the weights' squares add up to w^2, and each is
+ * what its operand is anyway, which in a thin wall says much more than how far operands part. */
+static void find_level(walker *w, const operand *of, const range *weights, uint32_t count,
+                       double turn, double size)
+{
+    range at_zero[CSG_SLOPES_NODES];
+    double doubt = 1e-5 * size, least = 0, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double low = turn * (turn > 0 ? of[i].least : of[i].most) - of[i].doubt - doubt;
+        double high = turn * (turn > 0 ? of[i].most : of[i].least) + of[i].doubt + doubt;
+        at_zero[i] = (range){fmax(0, low + size), fmax(0, fmin(size + doubt, high + size))};
+        least += at_zero[i].low * at_zero[i].low;
+        most += at_zero[i].high * at_zero[i].high;
+    }
+    double square = size * size, slack = 4 * doubt * size;
+    for (uint32_t i = 0; i < count; i++) {
+        double low = at_zero[i].low, high = at_zero[i].high;
+        double above = square - slack - (most - high * high);
+        double below = square + slack - (least - low * low);
+        at_zero[i].low = fmax(fmax(low, sqrt(fmax(above, 0))), weights[i].low);
+        at_zero[i].high = fmin(fmin(high, sqrt(fmax(below, 0))), weights[i].high);
+        at_zero[i].high = fmax(at_zero[i].high, at_zero[i].low); /* nothing is zero, but rounding */
+    }
+    w->has_level = mix_round(of, at_zero, count, &w->level);
+}
+
+/* Shares are in the proportions of (f_i - F + w)_+. */
 static bool join_round(walker *w, const csg_tape_node *node)
 {
     double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
@@ -352,25 +397,18 @@ static bool join_round(walker *w, const csg_tape_node *node)
         for (uint32_t k = i + 1; k < node->arity; k++)
             change = fmax(change, change_of(w, &of[i], &of[k]));
     }
-    operand sum;
-    range total = {0, 0}; /* of the weights so far */
-    bool done = true;
-    for (uint32_t i = 0; i < node->arity && done; i++) {
+    double reach = change + 2 * doubt + 1e-5 * size;
+    range weights[CSG_SLOPES_NODES];
+    for (uint32_t i = 0; i < node->arity; i++) {
         double at = turn * (of[i].value - value) + size;
-        double reach = change + 2 * doubt + 1e-5 * size;
-        range weight = {fmax(0, at - reach), at + reach};
-        if (weight.high <= 0)
-            continue;
-        range share = {total.low / (total.low + weight.high),
-                       total.high / (total.high + weight.low)};
-        if (total.high > 0)
-            done = csg_slopes_mix(&sum, &of[i], share, false);
-        else
-            sum = of[i];
-        total = (range){total.low + weight.low, total.high + weight.high};
+        weights[i] = (range){fmax(0, at - reach), at + reach};
     }
+    operand sum;
+    bool done = mix_round(of, weights, node->arity, &sum);
+    if (node == &w->tape->nodes[w->tape->count - 1])
+        find_level(w, of, weights, node->arity, turn, size);
     w->top -= node->arity - 1;
-    if (!done || !(total.high > 0))
+    if (!done)
         return false;
     of[0] = sum;
     of[0].value = value;
@@ -380,39 +418,6 @@ static bool join_round(walker *w, const csg_tape_node *node)
     of[0].least = least;
     of[0].most = most;
     return done;
-}
-
-/* ---- one ball for all --------------------------------------------------------------------------
- */
-
-/* A ball around all gradients: in the balls' hull, or longer combinations of these of at most that
- * length. Those that have an axis in common are within a circular cone around it, as all they
- * combine to, and climb along it by no less than they do. */
-static bool enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out)
-{
-    csg_cone cone;
-    double tangent = 0;
-    if (!csg_cone_find_axis(balls, &cone))
-        return false;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const csg_cone_ball *ball = &balls->items[i];
-        double along = 0, square = 0;
-        for (int k = 0; k < 3; k++) {
-            along += cone.axis[k] * ball->at[k];
-            square += ball->at[k] * ball->at[k];
-        }
-        double across = sqrt(fmax(square - along * along, 0)) + ball->spread;
-        if (!(along - ball->spread >= 0.999 * cone.least))
-            return false;
-        tangent = fmax(tangent, across / (along - ball->spread));
-    }
-    double least = 0.999 * cone.least, most = fmax(longest, least);
-    double sine = tangent / sqrt(1 + tangent * tangent);
-    for (int k = 0; k < 3; k++)
-        out->at[k] = 0.5 * (least + most) * cone.axis[k];
-    out->spread =
-        sqrt(sine * sine * most * most + 0.25 * (most - least) * (most - least)) + 1e-6 * most;
-    return true;
 }
 
 /* ---- leaves ------------------------------------------------------------------------------------
@@ -485,7 +490,11 @@ static void join_faces(operand *leaf)
 {
     static const double NARROW = 0.35; /* of the longest gradient */
     csg_cone_ball one;
-    if (!enclose(&leaf->balls, leaf->longest, &one) || !(one.spread <= NARROW * leaf->longest))
+    for (uint32_t i = 1; i < leaf->balls.count; i++) /* no such ball holds both: most turn more */
+        if (apart(&leaf->balls.items[0], &leaf->balls.items[i]) > 2.01 * NARROW * leaf->longest)
+            return;
+    if (!csg_slopes_enclose(&leaf->balls, leaf->longest, &one) ||
+        !(one.spread <= NARROW * leaf->longest))
         return;
     leaf->balls.items[0] = one;
     leaf->balls.count = 1;
@@ -494,7 +503,7 @@ static void join_faces(operand *leaf)
 }
 
 /* How much it can change within the region. */
-static double span_of_leaf(const walker *w, const operand *leaf)
+double csg_slopes_span(const walker *w, const operand *leaf)
 {
     double most = 0;
     if (leaf->faces || leaf->stretched || leaf->balls.has_edges)
@@ -527,7 +536,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
     find_range(w, node, low, high, leaf);
-    double span = span_of_leaf(w, leaf);
+    double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
     leaf->most = leaf->value + span;
     return true;
@@ -548,6 +557,8 @@ static bool walk(walker *w, const float *low, const float *high)
             known = join_round(w, node);
         else if (csg_op_is_fillet(node->op))
             known = csg_slopes_join_fillet(w, node);
+        else if (known && csg_blend_is_rule(node->blend))
+            csg_slopes_end_rule(w, node);
         if (!known || (node->join && !join_operands(w, node)))
             return false;
     }
@@ -561,13 +572,16 @@ static bool exceeds_hull(const operand *root)
 }
 
 /* How far gradients are at most from the middle of the balls, which they are in the hull of. */
-static double find_stray(const operand *root, double at[3])
+static double find_stray(const operand *root, csg_gradients *out)
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
     double stray = INFINITY;
     if (balls->count && exceeds_hull(root)) {
-        stray = enclose(balls, root->longest, &middle) ? middle.spread : INFINITY;
+        out->is_axis_known = true;
+        out->has_axis = csg_cone_find_axis(balls, &out->cone);
+        if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
+            stray = middle.spread;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
             for (int k = 0; k < 3; k++)
@@ -576,7 +590,7 @@ static double find_stray(const operand *root, double at[3])
         for (uint32_t i = 0; i < balls->count; i++)
             stray = fmax(stray, apart(&middle, &balls->items[i]));
     }
-    memcpy(at, middle.at, sizeof middle.at);
+    memcpy(out->middle, middle.at, sizeof middle.at);
     return stray;
 }
 
@@ -608,6 +622,7 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     w.scratch = scratch;
     w.scratch_floats = scratch_floats;
     w.top = 0;
+    w.has_level = false;
     for (int k = 0; k < CSG_OCTANTS; k++) {
         csg_vec3 p = k < 3 ? region->triangle[k] : region->c;
         x[k] = (float)p.x;
@@ -627,9 +642,21 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
     out->high = w.stack[0].high;
     out->least = w.stack[0].least;
     out->most = w.stack[0].most;
-    out->stray = find_stray(&w.stack[0], out->middle);
+    out->is_axis_known = false;
+    out->stray = find_stray(&w.stack[0], out);
     out->doubt = w.stack[0].doubt;
+    out->has_level = w.has_level;
+    if (w.has_level)
+        out->level = w.level.balls;
     return out->balls.count > 0;
+}
+
+bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)
+{
+    if (!gradients->is_axis_known)
+        return csg_cone_find_axis(&gradients->balls, out);
+    *out = gradients->cone;
+    return gradients->has_axis;
 }
 
 double csg_gradients_steepest(const csg_gradients *gradients)

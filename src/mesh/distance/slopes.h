@@ -31,7 +31,9 @@ typedef struct csg_gradients_region {
 } csg_gradients_region;
 
 typedef struct csg_gradients {
-    csg_cone_balls balls;
+    csg_cone_balls balls; /* of all gradients */
+    csg_cone_balls level; /* if has_level: of those where the field is zero, which may be fewer */
+    bool has_level;
     double value;       /* of the field, at c */
     double low, high;   /* over the triangle */
     double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
@@ -39,13 +41,18 @@ typedef struct csg_gradients {
     bool exceeds; /* they may be combinations of the balls with weights of more than 1 in all */
     double stray; /* no gradient is farther from `middle`; INFINITY: not known */
     double middle[3];
-    double doubt; /* rounding of the field's values */
+    double doubt;                 /* rounding of the field's values */
+    csg_cone cone;                /* the axis of `balls`, if it was looked for on the way */
+    bool is_axis_known, has_axis; /* that it was, and that there is one */
 } csg_gradients;
 
 /* scratch: as the kernel needs it. False: no bound is known. */
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
+
+/* The direction that all gradients have in common (csg_cone_find_axis of the balls). */
+bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out);
 
 /* What the field changes by at most along a way, of the longest of its parts along the axes: the
  * largest sum of a gradient's absolute parts. INFINITY: not known. */

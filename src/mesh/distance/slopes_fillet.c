@@ -18,7 +18,7 @@ typedef csg_slopes_which which;
 
 /* Of an operator at the centre, as the kernel has it: nothing else knows its operands' gradients.
  */
-static double value_of_node(const walker *w, const csg_tape_node *node)
+double csg_slopes_value_of_node(const walker *w, const csg_tape_node *node)
 {
     csg_tape below = *w->tape;
     csg_tape_node nodes[CSG_SLOPES_NODES];
@@ -149,7 +149,7 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
     if (blends ? !mix_fillet(w, node, share, count) : !csg_slopes_mix(&of[0], &of[1], share, true))
         return false;
     w->top -= node->arity - 1;
-    of[0].value = value_of_node(w, node);
+    of[0].value = csg_slopes_value_of_node(w, node);
     of[0].doubt = doubt + 1e-5 * r;
     of[0].low = fmin(low[0], high[0]) - of[0].doubt;
     of[0].high = fmax(low[0], high[0]) + of[0].doubt;

@@ -27,6 +27,8 @@ typedef struct csg_slopes_walker {
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
     uint32_t top;
+    csg_slopes_operand level; /* the field's gradients where it is zero, if has_level */
+    bool has_level;
 } csg_slopes_walker;
 
 typedef struct csg_slopes_range {
@@ -52,5 +54,19 @@ bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slop
                     bool is_sharp);
 /* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */
 bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
+/* A blend by a rule of lengths, of the two operands on top of the stack. What they become has no
+ * value until the operator ends. False: no bound is known. */
+bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node);
+void csg_slopes_end_rule(csg_slopes_walker *w, const csg_tape_node *node);
+
+/* A ball around all gradients, around the axis that they have in common. False: none is known. */
+bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis, double longest,
+                               csg_cone_ball *out);
+/* The same of any; false also where they have no axis in common. */
+bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
+/* How much an operand can change from c within the region. */
+double csg_slopes_span(const csg_slopes_walker *w, const csg_slopes_operand *o);
+/* The value at c of what a node is the root of. */
+double csg_slopes_value_of_node(const csg_slopes_walker *w, const csg_tape_node *node);
 
 #endif
