@@ -272,7 +272,7 @@ static void models_hold(void **state)
     }
     assert_true(seen.known > 1000 * test_times && seen.bent > 500 * test_times);
     assert_true(seen.near > 5000 * test_times && seen.turned > 1000 * test_times);
-    print_message("pieces %u volumes %u\n", seen.pieces, seen.volumes);
+    assert_true(seen.pieces > 3000 * test_times && seen.volumes > 10 * test_times);
 }
 
 /* Two of every kind of primitive, turned, with a blend that the models know. */
@@ -304,7 +304,7 @@ static void blends_hold(void **state)
         mesh_case_end(&m);
     }
     assert_true(seen.known > 5000 * test_times && seen.near > 30000 * test_times);
-    print_message("pieces %u volumes %u\n", seen.pieces, seen.volumes);
+    assert_true(seen.pieces > 20000 * test_times && seen.volumes > 80 * test_times);
     assert_true(seen.turned > 10000 * test_times);
 }
 

@@ -8,78 +8,8 @@
 #include <string.h>
 
 #include "field/taylor/taylor_walk.h"
-#include "field/taylor/warp_taylor.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/blend_kinds.h"
-#include "scene/operators/fillet.h"
-#include "scene/primitives/curve.h"
-#include "scene/primitives/kinds.h"
-
-/* ---- leaves ------------------------------------------------------------------------------------
- */
-
-/* Own coordinates; false: a warp on the way is not smooth in the ball. *off: how far the warps'
- * floats put them from where they are. */
-static bool place(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with_slopes,
-                  csg_smooth_leaf *l, double *off)
-{
-    const float *parameters = w->tape->parameters + leaf->parameters;
-    const float *frame = parameters + CSG_LEAF_FRAME;
-    bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
-    l->radius = w->radius;
-    l->with_slopes = with_slopes;
-    if (!leaf->warp && !is_offset)
-        csg_taylor_place_points(frame, w->c, l);
-    else if (!csg_taylor_warped(w->tape, leaf->warp, w->c, l, off))
-        return false;
-    for (int i = 0; i < 3 && is_offset; i++)
-        l->p[i].f.value -= (double)frame[i];
-    if (leaf->warp && !is_offset)
-        csg_taylor_placed(frame, l);
-    const csg_taylor *p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
-    l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
-    l->reach = csg_taylor_change_of(p, 3, w->radius).most;
-    return true;
-}
-
-/* How far the value is off: by the parameters, and by the doubles that are computed with. */
-static double rounding_of(const csg_taylor_walk *w, const float *parameters)
-{
-    static const double OF_DOUBLES = 0x1p-26 /* of the slack */, OF_PLACE = 0x1p-44;
-    double far = fabs(w->c[0]) + fabs(w->c[1]) + fabs(w->c[2]) + w->radius;
-    return (double)parameters[CSG_LEAF_OFF] + (double)parameters[CSG_LEAF_TURNED] * far +
-           OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
-}
-
-bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_slopes,
-                          csg_smooth_choice *choice, csg_smooth *out)
-{
-    static const double OF_DIRECTIONS = 1e-6; /* by floats of own parameters */
-    const csg_tape_node *leaf = &w->tape->nodes[index];
-    const float *parameters = w->tape->parameters + leaf->parameters;
-    double raise = (double)parameters[CSG_LEAF_RAISE], sigma = (double)parameters[CSG_LEAF_SIGMA];
-    csg_smooth_leaf l;
-    csg_smooth own;
-    double off = 0;
-    if (!csg_op_is_primitive(leaf->op) || csg_node_is_curve(csg_op_node_kind(leaf->op)) ||
-        !place(w, leaf, with_slopes, &l, &off))
-        return false;
-    l.choice = choice;
-    if (choice) {
-        choice->signs = w->signs[index] && raise * sigma >= 0;
-        choice->at_zero = w->signs[index] && !(fabs(raise) > 0);
-        choice->ways = 1;
-        choice->condition_count = 0;
-    }
-    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
-        return false;
-    *out = csg_smooth_line(&l, raise, sigma, &own);
-    out->f.error += rounding_of(w, parameters) + off;
-    out->f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED];
-    if (leaf->warp) /* as far as what is curved turns by that, twice */
-        out->f.turned += OF_DIRECTIONS + 2 * off / w->radius;
-    return true;
-}
 
 /* One of its formulas; *ways: how many there are. */
 static bool find_leaf(const csg_taylor_walk *w, uint32_t index, int way, int *ways,
@@ -98,7 +28,7 @@ static bool find_leaf(const csg_taylor_walk *w, uint32_t index, int way, int *wa
     for (int i = 0; i < out->condition_count; i++) {
         out->conditions[i] = choice.conditions[i];
         out->conditions[i].error +=
-            rounding_of(w, w->tape->parameters + w->tape->nodes[index].parameters);
+            csg_taylor_walk_rounding(w, w->tape->parameters + w->tape->nodes[index].parameters);
     }
     return isfinite(o->f.value + o->f.error + o->f.quartic);
 }
@@ -117,19 +47,6 @@ static void find_ways(csg_taylor_walk *w, uint32_t index)
 
 /* ---- operators of two --------------------------------------------------------------------------
  */
-
-double csg_taylor_walk_apart(const csg_taylor_walk *w, const csg_taylor *d)
-{
-    static const double SAME = 0x1p-16; /* of the radius */
-    double most = fabs(d->value) + csg_taylor_reach(d, w->radius);
-    return most <= SAME * w->radius ? most : INFINITY;
-}
-
-void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double apart)
-{
-    f->error += apart;
-    f->turned += 2 * apart / w->radius;
-}
 
 /* Which of two decides: 0, 1, or -1, it is not the same everywhere and may not be left open. turn:
  * 1 of a union, -1 of an intersection. Where only the sign matters an operand that is outside of a
@@ -154,20 +71,6 @@ static int decider(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_o
             return is_hidden ? 1 - i : i;
     }
     return -1;
-}
-
-void csg_taylor_walk_add_length(double length, csg_taylor *f)
-{
-    f->error += 0x1p-24 * length;
-    f->turned += 0x1p-22;
-}
-
-csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double factor,
-                                const csg_taylor *excess)
-{
-    csg_taylor sum = csg_taylor_sum(a, 1, b);
-    sum = csg_taylor_scaled(&sum, 0.5);
-    return csg_taylor_sum(&sum, factor, excess);
 }
 
 /* The blend of a and b of a union, turned: with x = a - b, |x| < support,
@@ -253,33 +156,6 @@ static bool join_siblings(csg_taylor_walk *w, uint32_t index)
 
 /* ---- decisions ---------------------------------------------------------------------------------
  */
-
-int csg_taylor_walk_choose(csg_taylor_walk *w, const bool *possible, int count)
-{
-    int all = 0, nth = 0;
-    for (int i = 0; i < count; i++)
-        all += possible[i];
-    if (!all || (all > 1 && (!w->may_decide || w->decisions == CSG_TAYLOR_DECISIONS)))
-        return -1;
-    if (all > 1) {
-        w->options[w->decisions] = all;
-        nth = w->script[w->decisions++];
-    }
-    for (int i = 0; i < count; i++)
-        if (possible[i] && nth-- == 0)
-            return i;
-    return -1;
-}
-
-/* What is not told leaves the piece where it is not the field, too: nothing is wrong then. */
-void csg_taylor_walk_require(csg_taylor_walk *w, const csg_taylor *g, double off)
-{
-    csg_taylor_piece *p = w->piece;
-    if (p->condition_count == CSG_TAYLOR_CONDITIONS)
-        return;
-    p->conditions[p->condition_count] = *g;
-    p->conditions[p->condition_count++].error += off;
-}
 
 static bool push_leaf(csg_taylor_walk *w, uint32_t index)
 {

@@ -7,22 +7,8 @@
 #ifndef CSG_FIELD_TAPE_TAYLOR_H
 #define CSG_FIELD_TAPE_TAYLOR_H
 
-#include "base/taylor.h"
 #include "field/tape.h"
-
-enum { CSG_TAYLOR_PIECES = 6, CSG_TAYLOR_CONDITIONS = 6 };
-
-/* The field, wherever none of the conditions is negative. */
-typedef struct csg_taylor_piece {
-    csg_taylor f, conditions[CSG_TAYLOR_CONDITIONS];
-    int condition_count;
-} csg_taylor_piece;
-
-/* At each point of the ball the field is one of these. */
-typedef struct csg_taylor_pieces {
-    csg_taylor_piece of[CSG_TAYLOR_PIECES];
-    int count;
-} csg_taylor_pieces;
+#include "field/taylor/pieces.h"
 
 /* Around c, in the tape's frame, with the rounding of the tape's parameters: what is enclosed is
  * the scene's field, or one that has its sign everywhere in the ball. For a tape that is valid

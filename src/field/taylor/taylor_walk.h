@@ -7,7 +7,8 @@
 #ifndef CSG_FIELD_TAYLOR_WALK_H
 #define CSG_FIELD_TAYLOR_WALK_H
 
-#include "field/taylor/tape_taylor.h"
+#include "field/tape.h"
+#include "field/taylor/pieces.h"
 #include "scene/primitives/smooth.h"
 
 enum {
@@ -59,6 +60,10 @@ static inline double csg_taylor_walk_most(const csg_taylor_walk *w, const csg_ta
 /* With its derivatives, if they are asked for. choice: NULL, or the formula that is asked for. */
 bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t leaf, bool with_slopes,
                           csg_smooth_choice *choice, csg_smooth *out);
+
+/* How far the value of a leaf with these parameters is off: by them, and by the doubles that are
+ * computed with. */
+double csg_taylor_walk_rounding(const csg_taylor_walk *w, const float *parameters);
 
 /* One of the options that are possible somewhere in the ball, by the script if there are several;
  * -1: there is none, or no more decisions may be left open. */

@@ -543,10 +543,8 @@ static bool begin(walk *w)
     w->worker_count = csg_pool_threads(r->context->pool);
     w->scratch_floats = csg_kernel_scratch_floats(r->marching->field->depth);
     w->segment_count = csg_octree_frontier_count(w->octree);
-    w->most_cubes = ALL_CUBES / (w->segment_count + 1);
-    w->most_cubes = w->most_cubes < LEAST_CUBES  ? LEAST_CUBES
-                    : w->most_cubes > MOST_CUBES ? MOST_CUBES
-                                                 : w->most_cubes;
+    uint64_t most = ALL_CUBES / (w->segment_count + 1);
+    w->most_cubes = most < LEAST_CUBES ? LEAST_CUBES : most > MOST_CUBES ? MOST_CUBES : most;
     w->workers = csg_memory_alloc(r->memory, w->worker_count * sizeof *w->workers);
     w->segments = csg_memory_alloc(r->memory, (w->segment_count + 1) * sizeof *w->segments);
     bool done = w->workers && w->segments;
@@ -579,8 +577,7 @@ static void end(walk *w)
 
 static void report_cubes(void *user, size_t done, size_t count)
 {
-    const walk *w = user;
-    csg_mesh_report_progress(w->remesh->watch, (double)done / (double)count);
+    csg_mesh_report_progress(((const walk *)user)->remesh->watch, (double)done / (double)count);
 }
 
 /* What each rank has found in its cubes, to all: of a cube its segment, then its points. */
@@ -640,9 +637,8 @@ static csgm_status look_again(walk *w)
     for (size_t i = 0; i < w->segment_count; i++)
         if (w->segments[i].unfinished)
             w->again[count++] = i;
-    w->most_cubes = ALL_AGAIN / (count + 1);
-    if (w->most_cubes > AGAIN_CUBES)
-        w->most_cubes = AGAIN_CUBES;
+    uint64_t most = ALL_AGAIN / (count + 1);
+    w->most_cubes = most < AGAIN_CUBES ? most : AGAIN_CUBES;
     csgm_status status = look_at_cubes(w, count);
     csg_memory_release(memory, w->again, bytes);
     w->again = NULL;
