@@ -467,7 +467,7 @@ static void cones_of_combinations_hold(void **state)
 static void cones_of_rules_hold(void **state)
 {
     (void)state;
-    try_kind("rules", ruled, 96, 400);
+    try_kind("rules", ruled, 96, 300);
 }
 
 /* Of few solids, so that gradients' bounds are found and not only tried. */
