@@ -260,7 +260,8 @@ static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], 
     return is_known ? excess : (csg_section){0, INFINITY};
 }
 
-/* turn: how far neighbours' s may be from this one's. */
+/* turn: how far neighbours' s may be from this one's. enough: of what leaves more open nothing is
+ * known, as it is divided; 0: it is not. */
 static account find_account(const job *j, const csg_measure_cube *q, const csg_halves *halves,
                             const csg_taylor_pieces *f, double enough, double *turn)
 {
@@ -269,19 +270,24 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
     int count = csg_section_find_groups(halves, half, groups);
     account a = {.low = 0};
     *turn = 1;
-    find_faces(half, halves, count == 1 ? f : NULL, enough, &a);
     if (count != 1) {
+        find_faces(half, halves, NULL, enough, &a);
         for (int i = 0; i < count; i++)
             take_group(halves, half, &groups[i], is_selected(j, q, halves, &groups[i]), &a);
         return a;
     }
     double cosine = groups[0].cosine;
     csg_truth selected = is_selected(j, q, halves, &groups[0]);
+    csg_section excess = excess_of(f, halves->planes[0].slope, half, enough);
+    bool is_bounded = selected == CSG_TRUTH_YES && isfinite(excess.most);
+    if (is_bounded && enough > 0 && excess.most - excess.least > enough)
+        return unknown(half);
     if (selected == CSG_TRUTH_NO)
         *turn = 0;
     else if (selected == CSG_TRUTH_YES)
         *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
-    take_graph(&groups[0], half, selected, excess_of(f, halves->planes[0].slope, half, enough), &a);
+    find_faces(half, halves, f, enough, &a);
+    take_graph(&groups[0], half, selected, excess, &a);
     return a;
 }
 

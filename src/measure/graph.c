@@ -171,6 +171,9 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_
         csg_graph_patch q = csg_graph_patch_first(half, i);
         if (!add_columns(&g, &q, CSG_GRAPH_LEAST * enough, &s))
             return false;
+        out->is_close = !(enough > 0) || s.error + s.open <= enough;
+        if (!out->is_close)
+            return true;
     }
     turn_back(&g.bases[0], s.integrals, out->integrals);
     out->error = fmin((s.error + s.open) * ROUNDING, 8 * half * half * half);

@@ -112,6 +112,10 @@ static double settle_smooth(const csg_measure_cube *q, double enough, sum *s)
     if (!csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f) ||
         !csg_graph_find(&f, q->half, enough, &graph))
         return INFINITY;
+    if (!graph.is_close) {
+        leave_open(NULL, q, s);
+        return volume_of(q);
+    }
     *s = (sum){.cut = volume_of(q)};
     add_graph(s, q, &graph);
     s->low[0] = fmax(s->low[0], 0);

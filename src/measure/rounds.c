@@ -57,8 +57,10 @@ static bool visit(rounds *r, csg_measure_worker *worker, tally *t, const csg_mea
         }
         t->is_full |= t->cubes >= r->most_of_one;
         t->cubes++;
+        bool is_last = t->is_full || q->level >= CSG_MEASURE_DEEPEST;
+        worker->enough = is_last ? 0 : r->share;
         double open = job->settle(job->user, r->walk, worker, q, account);
-        if (open <= r->share || t->is_full || q->level >= CSG_MEASURE_DEEPEST)
+        if (open <= r->share || is_last)
             t->worst = fmax(t->worst, open);
         else
             done = visit(r, worker, t, q, account);
@@ -75,7 +77,6 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
 {
     rounds *r = user;
     csg_measure_worker *worker = &r->walk->workers[worker_index];
-    worker->enough = r->share;
     tally *kept = &r->tallies[index], now = {.worst = 0};
     if (kept->worst <= r->share || kept->is_full)
         return true;

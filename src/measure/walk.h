@@ -22,7 +22,7 @@ typedef struct csg_measure_worker {
     csg_pruner pruner;
     csg_arena arena;
     float *scratch;
-    double enough; /* what one cube may leave open (rounds.h): no more is done for less */
+    double enough; /* what one cube may leave open before it is divided (rounds.h); 0: it is not */
 } csg_measure_worker;
 
 typedef struct csg_measure_walk {

@@ -83,6 +83,25 @@ static bool all_touch(const csg_taylor_walk *w, const csg_taylor_operand *of, co
     return all;
 }
 
+/* Where m operands that touch blend to 0, w + f of them are not negative and the sum of their
+ * squares is w^2, so that their own sum is between w and sqrt(m) w. Where it is more all over the
+ * ball the blend is positive, where it is less negative: *out. False: it may be zero. */
+static bool find_sign(const csg_taylor_walk *w, const csg_taylor_operand *of, const uint32_t *order,
+                      uint32_t m, double width, double turn, csg_taylor *out)
+{
+    csg_taylor sum = csg_taylor_constant(m * width);
+    for (uint32_t i = 0; i < m; i++)
+        sum = csg_taylor_sum(&sum, turn, &of[order[i]].f);
+    double slack = 1e-6 * m * width;
+    if (csg_taylor_walk_least(w, &sum) > sqrt(m) * width + slack)
+        *out = csg_taylor_constant(turn * width);
+    else if (csg_taylor_walk_most(w, &sum) < width - slack)
+        *out = csg_taylor_constant(-turn * width);
+    else
+        return false;
+    return true;
+}
+
 /* How many touch at the centre. */
 static uint32_t count_touching(const csg_taylor_operand *of, const uint32_t *order, uint32_t count,
                                double width, double turn)
@@ -150,11 +169,20 @@ static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
     for (uint32_t i = 0; i < open_count; i++)
         if (which >> i & 1)
             in[count++] = open[i];
-    if (!find_level(w, of, in, count, width, turn, &level))
-        return false;
+    bool is_nowhere_zero = false;
+    if (!find_level(w, of, in, count, width, turn, &level)) {
+        is_nowhere_zero =
+            w->signs[node - w->tape->nodes] && find_sign(w, of, in, count, width, turn, &level);
+        if (!is_nowhere_zero)
+            return false;
+    }
     for (uint32_t i = 0; i < open_count; i++) {
-        touch t = find_touch(w, &of[open[i]], &level, width, turn);
-        csg_taylor g = csg_taylor_scaled(&t.over, which >> i & 1 ? 1 : -1);
+        bool is_in = which >> i & 1;
+        const csg_taylor *from = is_nowhere_zero ? &of[order[0]].f : &level;
+        if (is_nowhere_zero && (!is_in || open[i] == order[0]))
+            continue; /* what is known of levels is that they are above the largest */
+        touch t = find_touch(w, &of[open[i]], from, width, turn);
+        csg_taylor g = csg_taylor_scaled(&t.over, is_in ? 1 : -1);
         csg_taylor_walk_require(w, &g, off);
     }
     if (count == 1) {
