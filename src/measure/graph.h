@@ -13,12 +13,12 @@ typedef struct csg_graph {
     double integrals[CSG_INTEGRALS]; /* of the solid in the cube, around the cube's centre */
     double error;                    /* of the volume */
     double first, second;            /* of the first and second moments */
-    bool is_close;                   /* no more is open than is enough; else nothing of this is known */
+    bool is_close; /* no more is open than is enough; else nothing of this is known */
 } csg_graph;
 
-/* f: in the ball around the cube. enough: what may be left open costs no more time, and no more is
- * found of a cube that leaves more; 0: as little as can be is. False: the surface may not be a graph
- * there. */
+/* f: in the ball around the cube. enough: what may be left open, and costs no more time; nothing is
+ * found of a cube that leaves more. 0: as little as can be is. False: the surface may not be a
+ * graph there. */
 bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_graph *out);
 
 /* What the surface's area in the cube is beside its flow along the normal of planes of this

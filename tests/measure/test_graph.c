@@ -290,10 +290,11 @@ static void blends_hold(void **state)
         mesh_case_begin(&m, 1);
         for (int k = 0; k < 2; k++) {
             double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
-            static const uint32_t OF[] = {CSG_NODE_SPHERE,  CSG_NODE_BOX,
-                                          CSG_NODE_FRUSTUM, CSG_NODE_CAPSULE,
-                                          CSG_NODE_TORUS,   CSG_NODE_SUPERELLIPSOID};
-            csg_primitive_kind kind = (csg_primitive_kind)OF[csg_random_below(&random, 6)];
+            static const uint32_t OF[] = {CSG_NODE_SPHERE,   CSG_NODE_BOX,
+                                          CSG_NODE_FRUSTUM,  CSG_NODE_CAPSULE,
+                                          CSG_NODE_TORUS,    CSG_NODE_SUPERELLIPSOID,
+                                          CSG_NODE_ELLIPSOID};
+            csg_primitive_kind kind = (csg_primitive_kind)OF[csg_random_below(&random, 7)];
             csg_primitive_of(kind)->example(&random, v);
             ids[k] = posed_anyhow(&m, csg_build_primitive(&m.builder, kind, v, NOWHERE), &random);
         }
