@@ -192,8 +192,8 @@ class Ranks(cli.CliTest):
         self.assertLess(written, mesh)
         self.assertIn("--max-memory", written)
         self.write("ball.txt", cli.BALL)
-        self.assertEqual(mesh - written, {"--cells", "--depfile", "--lod", "--root", "--sandbox", "--smooth", "--summary", "--trace",
-                                          "--watch"} & mesh)
+        self.assertEqual(mesh - written, {"--cells", "--depfile", "--lod", "--root", "--sandbox", "--smooth", "--stats-full",
+                                          "--summary", "--trace", "--watch"} & mesh)
         result = self.run_job((1, PROGRAM, "ball.txt", "-r", 20, "-o", "a.ply", "--lod", 3))
         self.assert_one_message(result, "csgmesh-mpi has no --lod")
         if shutil.which("man"):

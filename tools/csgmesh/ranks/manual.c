@@ -57,10 +57,10 @@ void cli_ranks_tell_help(void)
         "PLY, STL and GLB of one part are written by all ranks; of cells that follow the shape,\n"
         "and of meshes that are thinned out or improved, the work is shared out, and each rank\n"
         "has the whole mesh. Options are those of csgmesh mesh (csgmesh mesh --help) but for\n"
-        "drawings, --lod, --cells, --depfile, --trace, --watch and --root. A rank has one thread\n"
-        "unless -j says otherwise. --stats has the share of each rank. --resume keeps what is\n"
-        "finished of equal cells in FILE.resume and goes on with what a job that was stopped has\n"
-        "kept there. --man prints the page of the manual.\n",
+        "drawings, --lod, --cells, --depfile, --trace, --stats-full, --watch and --root. A rank\n"
+        "has one thread unless -j says otherwise. --stats has the share of each rank. --resume\n"
+        "keeps what is finished of equal cells in FILE.resume and goes on with what a job that\n"
+        "was stopped has kept there. --man prints the page of the manual.\n",
         USAGE);
 }
 
