@@ -45,6 +45,15 @@ static inline double csg_vec3_norm(csg_vec3 a)
 {
     return sqrt(csg_vec3_dot(a, a));
 }
+/* Of vectors that are arrays, as loops over the axes have them. */
+static inline double csg_dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static inline double csg_norm3(const double v[3])
+{
+    return sqrt(csg_dot3(v, v));
+}
 /* a / |a|, or zero when a is zero. */
 static inline csg_vec3 csg_vec3_normalize(csg_vec3 a)
 {

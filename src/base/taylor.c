@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "base/elementary.h"
+#include "base/geometry.h"
 
 enum { XX, YY, ZZ, XY, XZ, YZ };
 enum { XXX, YYY, ZZZ, XXY, XXZ, XYY, YYZ, XZZ, YZZ, XYZ };
@@ -84,11 +85,6 @@ csg_taylor csg_taylor_raised(csg_taylor a, double by)
     return a;
 }
 
-static double square_of(const double v[3])
-{
-    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-}
-
 /* Frobenius', no less than the largest eigenvalue's size. */
 static double square_of_bend(const double b[CSG_TAYLOR_SECOND])
 {
@@ -106,11 +102,24 @@ static double square_of_third(const double t[CSG_TAYLOR_THIRD])
 double csg_taylor_reach(const csg_taylor *a, double r)
 {
     double bend = 0.5 * sqrt(square_of_bend(a->bend)), third = sqrt(square_of_third(a->third)) / 6;
-    double all = sqrt(square_of(a->slope)) + (bend + (third + a->quartic * r) * r) * r;
+    double all = csg_norm3(a->slope) + (bend + (third + a->quartic * r) * r) * r;
     return (all * r + a->error) * (1 + 1e-12);
 }
 
 /* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
+double csg_taylor_bends(const csg_taylor *a, const double half[3])
+{
+    double reach = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            reach += 0.5 * fabs(a->bend[csg_taylor_second[i][j]]) * half[i] * half[j];
+            for (int k = 0; k < 3; k++)
+                reach +=
+                    fabs(a->third[csg_taylor_third[i][j][k]]) / 6 * half[i] * half[j] * half[k];
+        }
+    return reach;
+}
+
 double csg_taylor_stray(const csg_taylor *a, double r)
 {
     const double *b = a->bend;

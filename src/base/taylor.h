@@ -53,6 +53,9 @@ static inline double csg_taylor_most(const csg_taylor *a, double radius)
     return a->value + csg_taylor_reach(a, radius);
 }
 
+/* How far the polynomial's second and third order reach in a box of these half sizes around 0. */
+double csg_taylor_bends(const csg_taylor *a, const double half[3]);
+
 /* Its polynomial around x; what is off stays as it is. */
 csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3]);
 

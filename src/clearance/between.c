@@ -15,23 +15,19 @@ typedef struct bounding {
     double bend;              /* no point of b is farther from its chord */
 } bounding;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Of a way: both ends of all chords are beyond the plane, so the chords are, and the way is near
  * them. */
 static void look_along(bounding *w, const double d[3])
 {
     double back[3] = {-d[0], -d[1], -d[2]};
     double from = csg_clear_reach(w->a->pieces, w->a->cube.half, d) + w->slack + w->bend;
-    double apart = dot(d, w->offset) - from - csg_clear_reach(w->b->pieces, w->b->cube.half, back);
+    double apart =
+        csg_dot3(d, w->offset) - from - csg_clear_reach(w->b->pieces, w->b->cube.half, back);
     if (w->motion && apart > w->bound) {
         const csg_vec3 turned =
             csg_affine_covector(&w->motion->back, csg_vec3_make(back[0], back[1], back[2]));
         const double there[3] = {turned.x, turned.y, turned.z};
-        apart = fmin(apart, dot(d, w->moved) - from -
+        apart = fmin(apart, csg_dot3(d, w->moved) - from -
                                 csg_clear_reach(w->b->pieces, w->b->cube.half, there));
     }
     w->bound = fmax(w->bound, apart);
@@ -79,8 +75,8 @@ static void look_across_way(bounding *w)
     double way[3], square, share;
     for (int k = 0; k < 3; k++)
         way[k] = w->moved[k] - w->offset[k];
-    square = dot(way, way);
-    share = square > 0 ? -dot(way, w->offset) / square : 0;
+    square = csg_dot3(way, way);
+    share = square > 0 ? -csg_dot3(way, w->offset) / square : 0;
     share = fmin(fmax(share, 0), 1);
     look_along_vector(w, w->offset[0] + share * way[0], w->offset[1] + share * way[1],
                       w->offset[2] + share * way[2]);

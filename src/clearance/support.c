@@ -129,11 +129,6 @@ static void improve(dual *d, int index)
         d->rest[k] = base[k] + best_weight * p->slope[k];
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Weights that make -direction of two or three normals, as nearly as they can. False: not all are
  * positive. */
 static bool compose(dual *d, const double direction[3])
@@ -142,7 +137,8 @@ static bool compose(dual *d, const double direction[3])
     for (int i = 0; i < d->count; i++)
         s[i] = d->planes[i]->slope;
     if (d->count == 2) {
-        double g = dot(s[0], s[1]), a = -dot(s[0], w), b = -dot(s[1], w), det = 1 - g * g;
+        double g = csg_dot3(s[0], s[1]), a = -csg_dot3(s[0], w), b = -csg_dot3(s[1], w),
+               det = 1 - g * g;
         d->weights[0] = (a - g * b) / det;
         d->weights[1] = (b - g * a) / det;
     } else {
@@ -151,9 +147,9 @@ static bool compose(dual *d, const double direction[3])
             for (int k = 0; k < 3; k++)
                 cross[i][k] = s[(i + 1) % 3][(k + 1) % 3] * s[(i + 2) % 3][(k + 2) % 3] -
                               s[(i + 1) % 3][(k + 2) % 3] * s[(i + 2) % 3][(k + 1) % 3];
-        det = dot(s[0], cross[0]);
+        det = csg_dot3(s[0], cross[0]);
         for (int i = 0; i < 3; i++)
-            d->weights[i] = -dot(w, cross[i]) / det;
+            d->weights[i] = -csg_dot3(w, cross[i]) / det;
     }
     for (int i = 0; i < d->count; i++)
         if (!(d->weights[i] >= 0 && d->weights[i] < 1e6))

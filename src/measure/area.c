@@ -218,11 +218,6 @@ static void find_faces(double half, const csg_halves *halves, const csg_taylor_p
     }
 }
 
-static double length_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* The planes around all pieces of a field, whose gradients are known all over the cube. False: they
  * turn too far to be of use. */
 static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_halves *halves)
@@ -245,11 +240,11 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_
             rest.slope[k] -= e->slope[k];
         e->below = fmax(e->below, -csg_taylor_least(&rest, radius));
         e->above = fmax(e->above, csg_taylor_most(&rest, radius));
-        e->stray = fmax(e->stray, length_of(rest.slope) + csg_taylor_stray(&f->of[i].f, radius));
+        e->stray = fmax(e->stray, csg_norm3(rest.slope) + csg_taylor_stray(&f->of[i].f, radius));
     }
     halves->plane_count = halves->length = 1;
     halves->code[0] = 0;
-    return e->stray < MOST * length_of(e->slope);
+    return e->stray < MOST * csg_norm3(e->slope);
 }
 
 static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], double half,

@@ -10,11 +10,6 @@
 #include "mesh/distance/slopes.h"
 #include "scene/operators/blend.h"
 
-static double norm_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Of a tape of one node, with how far floats may be off. */
 static void value_at(const csg_kernel *kernel, const csg_tape *tape, const float at[3],
                      float *scratch, double *value, double *doubt)
@@ -57,7 +52,7 @@ static bool find_of_formula(const csg_kernel *kernel, const csg_tape *tape, cons
     if (tape->count != 1 || !csg_cone_find_bend(tape, tape->nodes, at, radius, &g, &bend))
         return false;
     value_at(kernel, tape, at, scratch, &value, &doubt);
-    double spread = g.spread + CSG_ENCLOSURE_ROUNDING * norm_of(g.at);
+    double spread = g.spread + CSG_ENCLOSURE_ROUNDING * csg_norm3(g.at);
     out->value = value;
     out->below = out->above = doubt + (spread + 0.5 * bend * radius) * radius;
     out->stray = spread + bend * radius;
@@ -74,7 +69,7 @@ static bool is_smooth_leaf(const csg_tape *tape, const csg_tape_node *leaf, cons
     csg_cone_balls balls = {.count = 0};
     return !leaf->warp && csg_op_is_primitive(leaf->op) &&
            csg_cone_add_leaf(&balls, tape, leaf, c, radius) && balls.count == 1 &&
-           fabs(norm_of(balls.items[0].at) - 1) <= UNIT;
+           fabs(csg_norm3(balls.items[0].at) - 1) <= UNIT;
 }
 
 /* Fillets turn on their operands' gradients, so their fields jump where these do, and then no
@@ -120,5 +115,5 @@ bool csg_enclosure_find(const csg_kernel *kernel, const csg_tape *tape, const do
     out->stray = stray + CSG_ENCLOSURE_ROUNDING * gradients.longest;
     out->below = out->above =
         stray * radius + gradients.doubt + CSG_ENCLOSURE_ROUNDING * gradients.longest * radius;
-    return isfinite(out->value + out->above) && isfinite(norm_of(out->slope));
+    return isfinite(out->value + out->above) && isfinite(csg_norm3(out->slope));
 }

@@ -39,20 +39,6 @@ static double half_of(const csg_graph_field *g)
 /* ---- where a piece is the field ----------------------------------------------------------------
  */
 
-/* How far second and third order reach in a box around the polynomial's centre. */
-static double bends_in_box(const csg_taylor *p, const double half[3])
-{
-    double reach = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            reach += 0.5 * fabs(p->bend[csg_taylor_second[i][j]]) * half[i] * half[j];
-            for (int k = 0; k < 3; k++)
-                reach +=
-                    fabs(p->third[csg_taylor_third[i][j][k]]) / 6 * half[i] * half[j] * half[k];
-        }
-    return reach;
-}
-
 /* The heights that the piece's surface has over the patch, no farther than the cube's. */
 static void find_heights(const visit *v, const choice *c, int i, double *low, double *high)
 {
@@ -109,9 +95,9 @@ static void find_where(visit *v, choice *c, int i, int n)
     memset(thirds.bend, 0, sizeof thirds.bend);
     double bent = is_crossed ? csg_graph_patch_third(q) + v->off[i].most : 0;
     v->rooms[i][n] = condition->error + condition->quartic * most * most +
-                     bends_in_box(&thirds, box) + fabs(sz) * bent +
+                     csg_taylor_bends(&thirds, box) + fabs(sz) * bent +
                      (across + fabs(zz) * (line + 0.5 * rest)) * rest;
-    const double wide[3] = {h, h, fmax(h, fabs(at[2])) + h};
+    const double wide[3] = {h, h, fmax(h, fabs(at[CSG_GRAPH_XYY])) + h};
     v->steep[i][n] = fabs(sz);
     for (int k = 0; k < 3; k++) {
         v->steep[i][n] += fabs(b[csg_taylor_second[k][2]]) * wide[k];
@@ -175,8 +161,10 @@ static double apart_of(const csg_graph_patch *a, const csg_graph_patch *b, doubl
     double x = d.half[0], y = d.half[1];
     const double *bend = d.bend, *t = d.third;
     change[0][0] = fabs(bend[CSG_GRAPH_XX]) + fabs(t[CSG_GRAPH_XXX]) * x / 2;
-    change[0][1] = fabs(bend[CSG_GRAPH_XY]) + fabs(t[CSG_GRAPH_XXY]) * x + fabs(t[2]) * y / 2;
-    change[1][0] = fabs(bend[CSG_GRAPH_XY]) + fabs(t[CSG_GRAPH_XXY]) * x / 2 + fabs(t[2]) * y;
+    change[0][1] =
+        fabs(bend[CSG_GRAPH_XY]) + fabs(t[CSG_GRAPH_XXY]) * x + fabs(t[CSG_GRAPH_XYY]) * y / 2;
+    change[1][0] =
+        fabs(bend[CSG_GRAPH_XY]) + fabs(t[CSG_GRAPH_XXY]) * x / 2 + fabs(t[CSG_GRAPH_XYY]) * y;
     change[1][1] = fabs(bend[CSG_GRAPH_YY]) + fabs(t[CSG_GRAPH_YYY]) * y / 2;
     for (int k = 0; k < 2; k++) {
         double most = fabs(d.g[k]) + change[k][0] * x + change[k][1] * y;
@@ -248,16 +236,17 @@ static void halve(const visit *v, const choice *c, uint32_t alive, int axis, int
     }
 }
 
+/* At a patch that may be one of the pieces `alive`, which may be halved `more` times. False: it is
+ * not told what is there. */
 static bool look(visit *v, const choice *c, uint32_t alive, int more)
 {
     double change[2] = {0, 0}, apart = 0;
     int taken = -1;
-    uint32_t all = alive, bits = 0;
-    bool is_known = true;
+    uint32_t bits = 0;
     if (++v->looks > LOOKS_MOST)
         more = 0;
     if (alive & (alive - 1))
-        all = alive = find_alive(v, c, alive, change);
+        alive = find_alive(v, c, alive, change);
     for (int i = 0; i < v->g->count; i++) {
         if (!(alive >> i & 1))
             continue;
@@ -267,13 +256,12 @@ static bool look(visit *v, const choice *c, uint32_t alive, int more)
     }
     if (taken < 0)
         return false;
-    is_known = !(bits >> CSG_COLUMNS_UNKNOWN & 1) && c->of[taken] == CSG_COLUMNS_CROSSED;
-    if (!(bits >> CSG_COLUMNS_UNKNOWN & 1) && !(bits & (bits - 1)) && !is_known) {
+    if (bits == 1u << CSG_COLUMNS_EMPTY || bits == 1u << CSG_COLUMNS_FULL) {
         take(v, c, taken, &v->off[taken]);
         return true;
     }
-    if (is_known) {
-        csg_graph_room off = room_of(v, c, all, taken, &apart);
+    if (!(bits >> CSG_COLUMNS_UNKNOWN & 1) && c->of[taken] == CSG_COLUMNS_CROSSED) {
+        csg_graph_room off = room_of(v, c, alive, taken, &apart);
         if (is_enough(v, c, taken, &off, apart) || !more) {
             take(v, c, taken, &off);
             return true;
@@ -328,7 +316,7 @@ static csg_graph_columns state_of(const csg_taylor *f, double half)
 {
     const double box[3] = {half, half, half};
     double most = 3 * half * half,
-           reach = bends_in_box(f, box) + f->error + f->quartic * most * most;
+           reach = csg_taylor_bends(f, box) + f->error + f->quartic * most * most;
     for (int k = 0; k < 3; k++)
         reach += fabs(f->slope[k]) * half;
     return f->value > reach    ? CSG_COLUMNS_FULL

@@ -88,16 +88,10 @@ static int sign_at(const csg_graph_base *g, const csg_graph_patch *q, double z)
 {
     const double at[3] = {q->at[0], q->at[1], z};
     const csg_taylor p = csg_taylor_moved(&g->p, at);
-    double reach = g->room;
-    for (int i = 0; i < 2; i++) {
+    const double box[3] = {q->half[0], q->half[1], 0};
+    double reach = g->room + csg_taylor_bends(&p, box);
+    for (int i = 0; i < 2; i++)
         reach += fabs(p.slope[i]) * q->half[i];
-        for (int j = 0; j < 2; j++) {
-            reach += 0.5 * fabs(p.bend[csg_taylor_second[i][j]]) * q->half[i] * q->half[j];
-            for (int k = 0; k < 2; k++)
-                reach += fabs(p.third[csg_taylor_third[i][j][k]]) / 6 * q->half[i] * q->half[j] *
-                         q->half[k];
-        }
-    }
     return p.value > reach ? 1 : p.value < -reach ? -1 : 0;
 }
 

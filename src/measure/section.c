@@ -36,11 +36,6 @@ typedef struct carving {
     csg_section sum;
 } carving;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double area_of(const polygon *p)
 {
     double sum[3] = {0};
@@ -54,12 +49,12 @@ static double area_of(const polygon *p)
         sum[1] += u[2] * v[0] - u[0] * v[2];
         sum[2] += u[0] * v[1] - u[1] * v[0];
     }
-    return 0.5 * sqrt(dot(sum, sum));
+    return 0.5 * csg_norm3(sum);
 }
 
 static double value_at(const condition *c, const double at[3])
 {
-    return c->value + dot(c->slope, at);
+    return c->value + csg_dot3(c->slope, at);
 }
 
 static void add_corner(polygon *p, const double at[3])
@@ -183,7 +178,7 @@ static void put_planes(carving *c, double along, const double direction[3])
 {
     for (int i = 0; i < c->halves->plane_count; i++) {
         const csg_enclosure *e = &c->halves->planes[i];
-        double room = fabs(dot(e->slope, direction)) * along;
+        double room = fabs(csg_dot3(e->slope, direction)) * along;
         condition *of = &c->conditions[c->count++];
         *of = (condition){.value = e->value, .below = e->below + room, .above = e->above + room};
         memcpy(of->slope, e->slope, sizeof of->slope);
@@ -209,23 +204,19 @@ csg_section csg_section_of_face(const csg_halves *halves, double half, int axis,
 /* ---- groups ------------------------------------------------------------------------------------
  */
 
-static double length_of(const double v[3])
-{
-    return sqrt(dot(v, v));
-}
-
 /* How far from the first one's plane, along its normal, the zeros of another can be in the cube,
  * which is within `reach` of its centre. INFINITY: anywhere. */
 static double width_of(const csg_enclosure *first, const csg_enclosure *e, double reach)
 {
-    double length = length_of(first->slope), climb = dot(first->slope, e->slope) / length, d[3];
-    if (!(length > 0) || !(climb > 0.9 * length_of(e->slope)))
+    double length = csg_norm3(first->slope), climb = csg_dot3(first->slope, e->slope) / length,
+           d[3];
+    if (!(length > 0) || !(climb > 0.9 * csg_norm3(e->slope)))
         return INFINITY;
     /* where the first one's plane is, this one's has this value but for what its slope is across */
     for (int k = 0; k < 3; k++)
         d[k] = e->slope[k] - climb / length * first->slope[k];
     double value = e->value - climb / length * first->value;
-    return (fabs(value) + length_of(d) * reach + fmax(e->below, e->above)) / climb * (1 + 1e-9);
+    return (fabs(value) + csg_norm3(d) * reach + fmax(e->below, e->above)) / climb * (1 + 1e-9);
 }
 
 /* No gradient is farther from the slope than one of this sine, nor the slope from the direction
@@ -233,8 +224,8 @@ static double width_of(const csg_enclosure *first, const csg_enclosure *e, doubl
 static double cosine_of(const csg_enclosure *e, const double direction[3])
 {
     static const double ROUNDING_OF_ANGLES = 1e-7, LEAST = 0.05;
-    double length = length_of(e->slope), sine = e->stray / length;
-    double between = fmin(dot(e->slope, direction) / length, 1);
+    double length = csg_norm3(e->slope), sine = e->stray / length;
+    double between = fmin(csg_dot3(e->slope, direction) / length, 1);
     if (!(e->stray > 0 && sine < 1 && between > 0))
         return 0;
     double cosine = sqrt(1 - sine * sine) * between - sine * sqrt(1 - between * between);
@@ -258,7 +249,7 @@ int csg_section_find_groups(const csg_halves *h, double half,
     int count = 0;
     for (int i = 0; i < h->plane_count; i++) {
         const csg_enclosure *e = &h->planes[i];
-        double length = length_of(e->slope);
+        double length = csg_norm3(e->slope);
         double own = length > 0 ? fmax(e->below, e->above) / length : INFINITY;
         bool is_taken = false;
         if (csg_halves_state_of_plane(e, half) != CSG_TRUTH_OPEN)
@@ -286,7 +277,7 @@ csg_section csg_section_of_group(const csg_halves *h, double half, const csg_sec
     carving c = {.halves = h, .group = g};
     const csg_enclosure *e = &h->planes[g->first];
     polygon p = {.count = 4};
-    double square = dot(e->slope, e->slope), reach = csg_enclosure_radius(half) + g->width;
+    double square = csg_dot3(e->slope, e->slope), reach = csg_enclosure_radius(half) + g->width;
     double across[2][3] = {{0}};
     int least = 0;
     if (!(square > 0) || !isfinite(g->width))
@@ -307,7 +298,7 @@ csg_section csg_section_of_group(const csg_halves *h, double half, const csg_sec
         int i = (k + 1) % 3, j = (k + 2) % 3;
         across[0][k] = g->direction[i] * axis[j] - g->direction[j] * axis[i];
     }
-    length = length_of(across[0]);
+    length = csg_norm3(across[0]);
     for (int k = 0; k < 3; k++)
         across[0][k] /= length;
     for (int k = 0; k < 3; k++) {

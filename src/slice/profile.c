@@ -80,15 +80,10 @@ typedef struct level {
     double least, most, from, to;
 } level;
 
-static double norm_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Of vectors within `stray` of one: they turn by an angle whose sine is the quotient of the two. */
 static void level_of_ball(const double at[3], double stray, level *out)
 {
-    double length = norm_of(at), sine = fabs(at[2]) / length, turn = stray / length;
+    double length = csg_norm3(at), sine = fabs(at[2]) / length, turn = stray / length;
     if (!(turn < 1))
         return;
     double cosine = sqrt(fmax(0, 1 - sine * sine)), rest = sqrt(1 - turn * turn);
@@ -248,7 +243,7 @@ static void sample(job *j, const csg_measure_worker *w, const csg_measure_cube *
                               w->scratch, j->walk.scratch_floats);
     for (int i = 0; i <= CSG_OCTANTS; i++) {
         const double v[3] = {(double)g[0][i], (double)g[1][i], (double)g[2][i]};
-        double length = norm_of(v);
+        double length = csg_norm3(v);
         most = length > 0 ? fmax(most, fabs(v[2]) / length) : 1;
     }
     put_level(j, q->c[2] - q->half, q->c[2] + q->half, fmin(most, 1));

@@ -11,11 +11,6 @@
 #include "mesh/distance/slopes.h"
 #include "walls/segment.h"
 
-static double norm_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* What floats cannot tell. */
 static double slack_of(const csg_wall_cubes *c)
 {
@@ -56,7 +51,7 @@ static bool find_normals(csg_wall_cubes *c, const csg_gradients *g, csg_wall_cub
     node->group_count = 1;
     for (uint32_t i = 0; i < count; i++) {
         const double *at = g->balls.items[i].at;
-        double length = norm_of(at), sine = g->balls.items[i].spread / length;
+        double length = csg_norm3(at), sine = g->balls.items[i].spread / length;
         caps[i].sine = sine + CSG_ENCLOSURE_ROUNDING;
         if (!(caps[i].sine < 1))
             return true;
@@ -71,7 +66,7 @@ static bool find_normals(csg_wall_cubes *c, const csg_gradients *g, csg_wall_cub
  * slopes of unit length, are then, too. */
 static bool may_meet(const csg_enclosure *a, const csg_enclosure *b, double half)
 {
-    double length_a = norm_of(a->slope), length_b = norm_of(b->slope);
+    double length_a = csg_norm3(a->slope), length_b = csg_norm3(b->slope);
     double room = fmax(a->below, a->above) / length_a + fmax(b->below, b->above) / length_b;
     room += 1e-12 * (fabs(a->value) / length_a + fabs(b->value) / length_b + half);
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -212,7 +207,7 @@ static int number_groups(const csg_halves *h, double half, uint8_t faces,
 static bool has_normals(const csg_halves *h)
 {
     for (int i = 0; i < h->plane_count; i++)
-        if (!(h->planes[i].stray > 0 && h->planes[i].stray < norm_of(h->planes[i].slope)))
+        if (!(h->planes[i].stray > 0 && h->planes[i].stray < csg_norm3(h->planes[i].slope)))
             return false;
     return h->plane_count > 0;
 }
@@ -232,7 +227,7 @@ static bool find_groups(csg_wall_cubes *c, const csg_halves *h, uint8_t faces, c
         groups[g] = (csg_wall_group){.has_planes = true};
         for (int i = 0; i < h->plane_count; i++) {
             const double *s = h->planes[i].slope;
-            double length = norm_of(s);
+            double length = csg_norm3(s);
             if (group_of[i] != g)
                 continue;
             groups[g].planes[n] = (uint8_t)i;

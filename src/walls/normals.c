@@ -10,14 +10,9 @@
 /* Of products of unit vectors, and of lengths. */
 static const double ROUNDING = 1e-9;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool normalize(double v[3])
 {
-    double length = sqrt(dot(v, v));
+    double length = csg_norm3(v);
     for (int k = 0; k < 3; k++)
         v[k] /= length;
     return length > 1e-12;
@@ -65,7 +60,7 @@ static bool look_one_way(const both *w, csg_wall_angle angle)
             double cosine = cosine_of(cap->sine);
             if (!(angle.cosine * cosine - angle.sine * cap->sine > 0)) /* 90 degrees together */
                 return false;
-            double room = dot(e, cap->at) - (angle.sine * cosine + angle.cosine * cap->sine);
+            double room = csg_dot3(e, cap->at) - (angle.sine * cosine + angle.cosine * cap->sine);
             if (room < least) {
                 least = room;
                 worst = cap;
@@ -95,7 +90,7 @@ bool csg_wall_is_apart(const csg_wall_normals *n, const double d[3], csg_wall_an
         double worst = -INFINITY;
         uint32_t at = 0;
         for (uint32_t i = 0; i < n->count; i++) {
-            double over = dot(e, n->caps[i].at) + n->caps[i].sine + ROUNDING;
+            double over = csg_dot3(e, n->caps[i].at) + n->caps[i].sine + ROUNDING;
             if (over > worst) {
                 worst = over;
                 at = i;
@@ -103,7 +98,7 @@ bool csg_wall_is_apart(const csg_wall_normals *n, const double d[3], csg_wall_an
         }
         if (worst <= 0)
             return true;
-        double sine = n->caps[at].sine + 2 * ROUNDING, along = dot(e, n->caps[at].at);
+        double sine = n->caps[at].sine + 2 * ROUNDING, along = csg_dot3(e, n->caps[at].at);
         if (!(sine < 1))
             return false;
         for (int k = 0; k < 3; k++)
@@ -112,7 +107,7 @@ bool csg_wall_is_apart(const csg_wall_normals *n, const double d[3], csg_wall_an
             return false;
         for (int k = 0; k < 3; k++)
             e[k] = cosine_of(sine) * e[k] - sine * n->caps[at].at[k];
-        if (!(dot(e, d) > angle.sine + ROUNDING))
+        if (!(csg_dot3(e, d) > angle.sine + ROUNDING))
             return false;
     }
     return false;
@@ -166,12 +161,12 @@ bool csg_wall_has_near(const csg_wall_normals *n, csg_vec3 direction, csg_wall_a
     uint32_t count = n->count < MOST ? n->count : MOST;
     for (int sweep = 0; sweep < SWEEPS; sweep++) /* the nearest combination, one weight at a time */
         for (uint32_t i = 0; i < count; i++) {
-            double to = fmax(0, weights[i] + dot(rest, n->caps[i].at)), by = to - weights[i];
+            double to = fmax(0, weights[i] + csg_dot3(rest, n->caps[i].at)), by = to - weights[i];
             weights[i] = to;
             for (int k = 0; k < 3; k++)
                 rest[k] -= by * n->caps[i].at[k];
         }
     for (int k = 0; k < 3; k++)
         sum[k] = d[k] - rest[k];
-    return normalize(sum) && dot(sum, d) >= angle.cosine;
+    return normalize(sum) && csg_dot3(sum, d) >= angle.cosine;
 }

@@ -11,19 +11,14 @@
 #include "field/gradients/cone_fillet.h"
 #include "field/point.h"
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The ball that reaches least far along w, and how far. */
 static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double *reach)
 {
     uint32_t worst = 0;
-    double norm = sqrt(dot(w, w));
+    double norm = csg_norm3(w);
     *reach = INFINITY;
     for (uint32_t i = 0; i < balls->count; i++) {
-        double d = dot(w, balls->items[i].at) - norm * balls->items[i].spread;
+        double d = csg_dot3(w, balls->items[i].at) - norm * balls->items[i].spread;
         if (d < *reach) {
             *reach = d;
             worst = i;
@@ -36,12 +31,12 @@ static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double 
  * shorter by that. False: it hardly does. */
 static bool step_towards(double w[3], const csg_cone_ball *ball)
 {
-    double point[3], to[3], norm = sqrt(dot(w, w));
+    double point[3], to[3], norm = csg_norm3(w);
     for (int k = 0; k < 3; k++) {
         point[k] = ball->at[k] - (norm > 0 ? w[k] / norm : 0) * ball->spread;
         to[k] = point[k] - w[k];
     }
-    double square = dot(to, to), share = square > 0 ? -dot(w, to) / square : 0;
+    double square = csg_dot3(to, to), share = square > 0 ? -csg_dot3(w, to) / square : 0;
     share = share < 0 ? 0 : share > 1 ? 1 : share;
     for (int k = 0; k < 3; k++)
         w[k] += share * to[k];
@@ -56,7 +51,7 @@ bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
         for (int k = 0; k < 3; k++)
             w[k] += balls->items[i].at[k] / balls->count;
     for (int step = 0; step < STEPS; step++) {
-        double reach, norm = sqrt(dot(w, w));
+        double reach, norm = csg_norm3(w);
         if (!(norm > 1e-6))
             break;
         uint32_t worst = worst_of(balls, w, &reach);
@@ -147,7 +142,7 @@ static double largest_of(const csg_cone_leaves *leaves)
     double most = 0;
     for (uint32_t i = 0; i < leaves->balls.count; i++) {
         const csg_cone_ball *ball = &leaves->balls.items[i];
-        most = fmax(most, sqrt(dot(ball->at, ball->at)) + ball->spread);
+        most = fmax(most, csg_norm3(ball->at) + ball->spread);
     }
     for (uint32_t i = 0; i < leaves->count; i++)
         most = fmax(most, leaves->corner[i]);

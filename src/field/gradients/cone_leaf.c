@@ -12,11 +12,6 @@
 #include "field/gradients/cone_warp.h"
 #include "scene/primitives/curve.h"
 
-static double square_of(const double v[3])
-{
-    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-}
-
 /* ---- shapes ----------------------------------------------------------------------------------
  */
 
@@ -35,7 +30,7 @@ static const double STRAIGHT = 0.01745;
 static double distance_between(const double a[3], const double b[3])
 {
     const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return sqrt(square_of(d));
+    return csg_norm3(d);
 }
 
 static bool take_normal(void *user, csg_vec3 n)
@@ -117,7 +112,7 @@ static bool add_formula(csg_cone_leaf *l, const csg_tape *tape)
     double middle[3], half[3];
     middle_of_box(&gradient, middle, half);
     if (l->balls->count + CORNERS > CSG_CONE_MOST)
-        return csg_cone_add(l, middle[0], middle[1], middle[2], sqrt(square_of(half)));
+        return csg_cone_add(l, middle[0], middle[1], middle[2], csg_norm3(half));
     for (int i = 0; i < CORNERS; i++)
         if (!csg_cone_add(l, middle[0] + (i & 1 ? half[0] : -half[0]),
                           middle[1] + (i & 2 ? half[1] : -half[1]),
@@ -232,7 +227,7 @@ bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const f
     double middle[3], half[3];
     middle_of_box(&gradient, middle, half);
     *bend = l.norm * norm * own * (1 + 1e-6);
-    if (!csg_cone_add(&l, middle[0], middle[1], middle[2], sqrt(square_of(half))))
+    if (!csg_cone_add(&l, middle[0], middle[1], middle[2], csg_norm3(half)))
         return false;
     *g = balls.items[0];
     return true;

@@ -20,15 +20,10 @@ typedef csg_slopes_which which;
 /* ---- differences and shares --------------------------------------------------------------------
  */
 
-static double norm_of(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
 {
     const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
-    return norm_of(d) + a->spread + b->spread;
+    return csg_norm3(d) + a->spread + b->spread;
 }
 
 /* How much a field can change from c within the region whose gradients are in a ball of vectors. */
@@ -41,7 +36,7 @@ static double span_of(const walker *w, const double at[3], double spread)
         double change = fabs(at[0] * to.x + at[1] * to.y + at[2] * to.z);
         most = change > most ? change : most;
     }
-    return most + r->around * norm_of(at) + r->half * (fabs(at[0]) + fabs(at[1]) + fabs(at[2])) +
+    return most + r->around * csg_norm3(at) + r->half * (fabs(at[0]) + fabs(at[1]) + fabs(at[2])) +
            spread * w->radius;
 }
 
@@ -459,7 +454,7 @@ static void find_range(const walker *w, const csg_tape_node *node, const float *
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
-        stray = 2 * fmax(norm_of(balls[0].at), leaf->balls.corner);
+        stray = 2 * fmax(csg_norm3(balls[0].at), leaf->balls.corner);
     if (!is_concave(node)) {
         leaf->low -= stray * w->flat;
         leaf->high += stray * w->flat;
@@ -528,11 +523,11 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
     leaf->longest = leaf->balls.corner;
     for (uint32_t i = 0; i < leaf->balls.count; i++) {
         const csg_cone_ball *ball = &leaf->balls.items[i];
-        leaf->longest = fmax(leaf->longest, norm_of(ball->at) + ball->spread);
+        leaf->longest = fmax(leaf->longest, csg_norm3(ball->at) + ball->spread);
     }
     leaf->faces = leaf->balls.count > 1;
     for (uint32_t i = 0; i < leaf->balls.count; i++) /* else the frame, or a warp, stretches */
-        leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * norm_of(leaf->balls.items[i].at);
+        leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
     find_range(w, node, low, high, leaf);
@@ -602,7 +597,7 @@ static double find_longest(const operand *root)
     if (exceeds_hull(root))
         return root->longest;
     for (uint32_t i = 0; i < balls->count; i++)
-        most = fmax(most, norm_of(balls->items[i].at) + balls->items[i].spread);
+        most = fmax(most, csg_norm3(balls->items[i].at) + balls->items[i].spread);
     return most;
 }
 

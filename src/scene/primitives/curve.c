@@ -122,11 +122,6 @@ static void try_ball(search *s, double t, const double at[CSG_CURVE_AXES])
     }
 }
 
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Newton's step for Q . Q' = r' |Q| from the ball at t; NaN where that is no minimum. */
 static double newton_step(const csg_curve *c, double t, const double at[CSG_CURVE_AXES])
 {
@@ -143,11 +138,11 @@ static double newton_step(const csg_curve *c, double t, const double at[CSG_CURV
             cubic ? (1 - t) * ((1 - t) * d[0] + t * d[1]) + t * mid : (1 - t) * d[0] + t * mid;
         second[k] = cubic ? (1 - t) * e[0] + t * e[1] : e[0];
     }
-    double length = sqrt(dot(at, at)), radius = first[CSG_CURVE_RADIUS];
-    double inner = length > 0 ? dot(at, first) / length : 0;
-    double climb = dot(at, first) - radius * length;
-    double steep =
-        dot(first, first) + dot(at, second) - second[CSG_CURVE_RADIUS] * length - radius * inner;
+    double length = csg_norm3(at), radius = first[CSG_CURVE_RADIUS];
+    double inner = length > 0 ? csg_dot3(at, first) / length : 0;
+    double climb = csg_dot3(at, first) - radius * length;
+    double steep = csg_dot3(first, first) + csg_dot3(at, second) -
+                   second[CSG_CURVE_RADIUS] * length - radius * inner;
     return steep > 0 ? -climb / steep : NAN;
 }
 
@@ -180,7 +175,7 @@ static void settle(search *s)
         now.t = fmin(fmax(now.t + step, 0), 1);
         csg_curve_at(s->curve, now.t, now.at);
     }
-    double away = sqrt(dot(now.at, now.at));
+    double away = csg_norm3(now.at);
     now.least = away - now.at[CSG_CURVE_RADIUS];
     if (now.least <= s->least + 4 * DBL_EPSILON * away)
         *s = now;
@@ -198,7 +193,7 @@ static void coefficients(const csg_curve *c, double v, double out[SQUARE + 1])
         for (int j = 0; j <= n; j++) {
             double a = c->at[i][CSG_CURVE_RADIUS] + v, b = c->at[j][CSG_CURVE_RADIUS] + v;
             double weight = choose[n - 2][i] * choose[n - 2][j] / whole[n - 2][i + j];
-            out[i + j] += weight * (dot(c->at[i], c->at[j]) - a * b);
+            out[i + j] += weight * (csg_dot3(c->at[i], c->at[j]) - a * b);
         }
 }
 
