@@ -228,13 +228,7 @@ static void test_what_is_no_manifold(void **state)
     indices[12] = 0, indices[13] = 0, indices[14] = 1;
     assert_irregular(&(soup){tetra_positions, indices, 4, 5});
     /* two tetrahedra with a vertex in common */
-    memcpy(positions, tetra_positions, sizeof tetra_positions);
-    for (int i = 3; i < 12; i++)
-        positions[9 + i] = -tetra_positions[i];
-    for (int i = 0; i < 12; i++) {
-        indices[i] = tetra_indices[i];
-        indices[12 + i] = tetra_indices[11 - i] ? tetra_indices[11 - i] + 3 : 0;
-    }
+    small_touching_tetrahedra(positions, indices);
     assert_irregular(&(soup){positions, indices, 7, 8});
     /* with an edge in common */
     const float edge[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1};

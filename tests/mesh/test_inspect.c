@@ -99,19 +99,12 @@ static void test_flipped_triangle(void **state)
     assert_int_equal(check.euler, 2);
 }
 
-/* Two tetrahedra with one vertex in common: one vertex with two fans, two components. */
+/* One vertex with two fans, two components. */
 static void test_touching_vertex(void **state)
 {
     float positions[21];
     uint32_t indices[24];
-    memcpy(positions, tetra_positions, sizeof tetra_positions);
-    for (int i = 3; i < 12; i++)
-        positions[9 + i] = -tetra_positions[i];
-    for (int i = 0; i < 12; i++) {
-        indices[i] = tetra_indices[i];
-        /* the mirror image, turned round again */
-        indices[12 + i] = tetra_indices[11 - i] ? tetra_indices[11 - i] + 3 : 0;
-    }
+    small_touching_tetrahedra(positions, indices);
     csgm_mesh_check check = inspect(positions, 7, indices, 8);
     assert_int_equal(check.nonmanifold_vertices, 1);
     assert_int_equal(check.nonmanifold_edges, 0);

@@ -177,16 +177,23 @@ static csg_formula_id random_wide_formula(terms *t, csg_random *random, uint32_t
     return apply(t, CSG_FORMULA_MUL, csg_formula_constant(&t->builder, 1.0 / count), sum);
 }
 
+/* Solids to combine, each placed anyhow. */
+static void make_operands(csg_scene_builder *builder, csg_random *random, uint32_t count,
+                          csg_node_id *operands)
+{
+    for (uint32_t k = 0; k < count; k++) {
+        csg_affine place = test_random_affine(random, 0.6, 1.2, 0.3);
+        operands[k] = csg_build_transform(builder, &place, solid(builder, random), nowhere);
+    }
+}
+
 static csg_node_id combined_wide(csg_scene_builder *builder, csg_random *random)
 {
     terms t;
     csg_formula_step steps[128];
     csg_node_id operands[MOST_COMBINED];
     uint32_t count = 4 + csg_random_below(random, MOST_COMBINED - 3);
-    for (uint32_t k = 0; k < count; k++) {
-        csg_affine place = test_random_affine(random, 0.6, 1.2, 0.3);
-        operands[k] = csg_build_transform(builder, &place, solid(builder, random), nowhere);
-    }
+    make_operands(builder, random, count, operands);
     csg_formula_begin(&t.builder, &builder->context->memory);
     csg_formula_id result = random_wide_formula(&t, random, count);
     uint32_t step_count = csg_formula_collect(&t.builder, result, steps);
@@ -205,10 +212,7 @@ static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
     csg_formula_step steps[64];
     bool three = chance(random, 0.4);
     csg_node_id operands[3];
-    for (int k = 0; k < 3; k++) {
-        csg_affine place = test_random_affine(random, 0.6, 1.2, 0.3);
-        operands[k] = csg_build_transform(builder, &place, solid(builder, random), nowhere);
-    }
+    make_operands(builder, random, 3, operands);
     csg_formula_begin(&t.builder, &builder->context->memory);
     csg_formula_id result = random_formula(&t, random, three);
     uint32_t count = csg_formula_collect(&t.builder, result, steps);
