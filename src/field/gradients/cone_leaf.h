@@ -16,7 +16,8 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
 
 /* How a formula's gradient turns in the ball: at c it is within g->spread of g->at, which is
  * rounding, and of any two points no two gradients differ by more than *bend times the distance
- * between them. False: it is no formula, or nothing is known. */
+ * between them. In a frame that is an offset, the same holds in the cube around the ball. False: it
+ * is no formula, or nothing is known. */
 bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                         double radius, csg_cone_ball *g, double *bend);
 

@@ -7,8 +7,9 @@
  * places only such count as the surface can reach: where f = 0 an operand of a union is at least
  * minus the widths of the blends, one of an intersection at most their sum.
  *
- * Where all operators are sharp and all leaves primitives, cells are told apart: the field is that
- * of one leaf at a time, and turns into that of another only where both are near zero.
+ * Where all operators are sharp and all leaves primitives or formulas, cells are told apart: the
+ * field is that of one leaf at a time, and turns into that of another only where both are near
+ * zero.
  *
  * A fillet much finer than a cell looks like a crease. Whether it is taken for one must not depend
  * on what pruning has left, so only blends as wide as a cell pass here.
@@ -18,6 +19,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "field/gradients/cone_leaf.h"
 #include "grid/octree/octree.h"
 #include "scene/operators/blend_kinds.h"
 
@@ -25,6 +27,10 @@ enum { PART_CELLS = CSG_PART_EDGE * CSG_PART_EDGE * CSG_PART_EDGE };
 
 /* sqrt(3) / 2, rounded up: of a cube's diagonal, in edges. */
 static const float HALF_DIAGONAL = 0.8661f;
+/* By how much a formula's gradient may turn in a cell, as a part of its length: by 23 degrees, less
+ * than where a tip is looked for (25). The shortest bracket around a jump is 512 times as short,
+ * and from end to end of it the gradient turns by less than a jump's three degrees. */
+static const double MOST_TURN = 0.4;
 
 typedef struct ball {
     float at[3], radius;
@@ -53,8 +59,12 @@ static bool may_crease(uint8_t op, const float *own, const float q[3], float rea
            csg_primitive_of(csg_op_node_kind(op))->may_crease(own, q, reach, b);
 }
 
-static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, ball at, csg_band b)
+/* still: formulas do not crease. */
+static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, ball at, csg_band b,
+                            bool still)
 {
+    if (node->op == CSG_OP_FIELD && still)
+        return false;
     const float *parameters = tape->parameters + node->parameters;
     bool offset = node->frame == CSG_FRAME_OFFSET;
     const float *own = parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
@@ -100,13 +110,13 @@ static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t
 }
 
 static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, uint32_t count,
-                            ball at, float cell)
+                            ball at, float cell, bool still)
 {
     csg_band b = {0, 0};
     if (!find_band(tape, nodes, count, cell, &b))
         return true;
     for (uint32_t i = 0; i < count; i++)
-        if (csg_op_is_leaf(nodes[i].op) && leaf_may_crease(tape, &nodes[i], at, b))
+        if (csg_op_is_leaf(nodes[i].op) && leaf_may_crease(tape, &nodes[i], at, b, still))
             return true;
     return false;
 }
@@ -120,14 +130,16 @@ static ball ball_of(const csg_feature_probe *probe, int octant, float cell)
     return at;
 }
 
-static bool parts_may_crease(const csg_feature_probe *probe, const csg_block_part *parts)
+static bool parts_may_crease(const csg_feature_probe *probe, const csg_block_part *parts,
+                             unsigned still)
 {
     const csg_tape *tape = &probe->marching->field->tape;
     float cell = (float)probe->marching->lattice->cell_size;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         const csg_block_part *part = &parts[octant];
-        if (part->state == CSG_CELL_SURFACE && tape_may_crease(tape, part->nodes, part->node_count,
-                                                               ball_of(probe, octant, cell), cell))
+        if (part->state == CSG_CELL_SURFACE &&
+            tape_may_crease(tape, part->nodes, part->node_count, ball_of(probe, octant, cell), cell,
+                            still >> octant & 1))
             return true;
     }
     return false;
@@ -185,13 +197,13 @@ static void gather_cells(const csg_feature_probe *probe, int octant, part_cells 
     }
 }
 
-/* Whether at each point the field is the value of one primitive. */
+/* Whether at each point the field is the value of one primitive or formula. */
 static bool is_one_at_a_time(const csg_block_part *part)
 {
     for (uint32_t i = 0; i < part->node_count; i++) {
         const csg_tape_node *node = &part->nodes[i];
         bool is_sharp = node->join == CSG_JOIN_NONE || node->join_blend == CSG_BLEND_SHARP;
-        bool is_known = csg_op_is_primitive(node->op) && !node->warp;
+        bool is_known = (csg_op_is_primitive(node->op) || node->op == CSG_OP_FIELD) && !node->warp;
         bool is_operator = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (!is_sharp || !(is_known || is_operator))
             return false;
@@ -203,7 +215,8 @@ static bool is_one_at_a_time(const csg_block_part *part)
  * is farther than half a diagonal from one of them, and f there no farther from zero than it can
  * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
  */
-static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, part_cells *cells)
+static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool still,
+                       part_cells *cells)
 {
     csg_tape_node alone = *node;
     csg_tape tape = probe->marching->field->tape;
@@ -221,12 +234,12 @@ static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, part
         if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
             continue;
         ball at = {{cells->x[i], cells->y[i], cells->z[i]}, HALF_DIAGONAL * cell};
-        cells->may_crease[i] =
-            ++cells->leaves[i] > 1 || leaf_may_crease(&tape, &alone, at, (csg_band){-off, off});
+        cells->may_crease[i] = ++cells->leaves[i] > 1 ||
+                               leaf_may_crease(&tape, &alone, at, (csg_band){-off, off}, still);
     }
 }
 
-static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part *part,
+static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part *part, bool still,
                       uint8_t *rows)
 {
     part_cells cells;
@@ -236,7 +249,7 @@ static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part
         cells.x[i] = cells.x[0], cells.y[i] = cells.y[0], cells.z[i] = cells.z[0];
     for (uint32_t i = 0; i < part->node_count && !all && cells.count; i++)
         if (csg_op_is_leaf(part->nodes[i].op))
-            count_leaf(probe, &part->nodes[i], &cells);
+            count_leaf(probe, &part->nodes[i], still, &cells);
     for (size_t i = 0; i < cells.count; i++)
         if (all || cells.may_crease[i]) {
             rows[cells.cell[i] / CSG_BLOCK_EDGE] |= (uint8_t)(1u << cells.cell[i] % CSG_BLOCK_EDGE);
@@ -245,16 +258,76 @@ static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part
     return any;
 }
 
-static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts, uint8_t *rows)
+static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts, unsigned still,
+                       uint8_t *rows)
 {
     bool any = false;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         const csg_block_part *part = &parts[octant];
         if (part->state == CSG_CELL_SURFACE)
-            any = mark_part(probe, octant, part, rows) || any;
+            any = mark_part(probe, octant, part, still >> octant & 1, rows) || any;
     }
     return any;
 }
+
+/* ---- formulas --------------------------------------------------------------------------------
+ */
+
+/* Whether second derivatives, all over a cube, keep a formula's gradient from turning by much in a
+ * cell, as seen from the shortest that it can be. half: of the cube's edge. */
+static bool is_still(const csg_tape *tape, const csg_tape_node *node, const float at[3],
+                     double half, double cell)
+{
+    csg_cone_ball g;
+    double bend, diagonal = 2 * (double)HALF_DIAGONAL;
+    double radius = node->frame == CSG_FRAME_OFFSET ? half : half * diagonal;
+    if (!csg_cone_find_bend(tape, node, at, radius, &g, &bend))
+        return false;
+    double shortest = csg_norm3(g.at) - g.spread - bend * half * diagonal;
+    return bend * cell * diagonal < MOST_TURN * shortest;
+}
+
+static bool are_still(const csg_feature_probe *probe, const float at[3], float half)
+{
+    const csg_block *block = probe->block;
+    for (uint32_t i = 0; i < block->node_count; i++)
+        if (block->nodes[i].op == CSG_OP_FIELD &&
+            !is_still(&probe->marching->field->tape, &block->nodes[i], at, (double)half,
+                      probe->marching->lattice->cell_size))
+            return false;
+    return true;
+}
+
+/* Whether the surface passes a part of a block. */
+static bool is_passed(const csg_block *block, int octant)
+{
+    enum { P = CSG_PART_EDGE };
+    unsigned columns = (1u << P) - 1;
+    for (int row = 0; row < P * P; row++) {
+        int j = (octant >> 1 & 1) * P + row % P, k = (octant >> 2 & 1) * P + row / P;
+        if (csg_cell_rows_of(block, j, k).mixed >> (octant & 1) * P & columns)
+            return true;
+    }
+    return false;
+}
+
+/* In which parts of the block no formula creases: the whole is asked first. */
+static unsigned find_still_parts(const csg_feature_probe *probe)
+{
+    float cell = (float)probe->marching->lattice->cell_size, middle[3];
+    for (int axis = 0; axis < 3; axis++)
+        middle[axis] = probe->line[axis][CSG_BLOCK_EDGE / 2];
+    if (are_still(probe, middle, 0.5f * CSG_BLOCK_EDGE * cell))
+        return (1u << CSG_OCTANTS) - 1;
+    unsigned still = 0;
+    for (int octant = 0; octant < CSG_OCTANTS; octant++)
+        if (is_passed(probe->block, octant) &&
+            are_still(probe, ball_of(probe, octant, cell).at, 0.5f * CSG_PART_EDGE * cell))
+            still |= 1u << octant;
+    return still;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
 
 /* A sharp operand that is in the block's tape but far away would have smooth thin parts looked at
  * that a shorter tape leaves alone; so whatever the octree has dropped, parts are asked. */
@@ -262,18 +335,21 @@ bool csg_feature_find_possible(csg_feature_probe *probe,
                                uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE])
 {
     const csg_block *block = probe->block;
+    unsigned still = find_still_parts(probe);
     memset(rows, 0, CSG_BLOCK_EDGE * CSG_BLOCK_EDGE);
     if (block->parts)
-        return parts_may_crease(probe, block->parts) && mark_parts(probe, block->parts, rows);
+        return parts_may_crease(probe, block->parts, still) &&
+               mark_parts(probe, block->parts, still, rows);
     csg_block_part parts[CSG_OCTANTS];
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
         parts[octant] = (csg_block_part){block->nodes, block->node_count, CSG_CELL_SURFACE};
-    if (!parts_may_crease(probe, parts))
+    if (!parts_may_crease(probe, parts, still))
         return false;
     csg_feature_around_begin(probe->around, probe->memory, probe->marching);
     csg_arena_mark mark = csg_arena_get_mark(&probe->around->arena);
     bool done = split(probe, parts); /* without memory the run ends */
-    bool possible = !done || (parts_may_crease(probe, parts) && mark_parts(probe, parts, rows));
+    bool possible =
+        !done || (parts_may_crease(probe, parts, still) && mark_parts(probe, parts, still, rows));
     probe->around->out_of_memory |= !done;
     csg_arena_release_to(&probe->around->arena, mark);
     return possible;
