@@ -28,11 +28,11 @@ typedef struct csgm_mesh_figures {
 CSGM_API csgm_mesh_figures csgm_mesh_figures_default(void);
 
 /* csgm_mesh_build_file, and the figures of what goes into the file, in the memory of the border of
- * what has been made and not of the mesh; where the file cannot be filled while the mesh is made,
- * of the mesh in memory. Each vertex is looked at: a mesh is a closed oriented 2-manifold exactly
- * if the triangles around each are one fan. Sums are exact, so they have the same digits for any
- * number of threads. scene: of the field. *figures is written on CSGM_OK. With ranks
- * (csgmesh/ranks.h): CSGM_ERR_ARGUMENT. */
+ * what has been made and not of the mesh, even where the file is written of a mesh in memory, if
+ * its cells are equal; of other meshes, csgm_mesh_inspect's. Each vertex is looked at: a mesh is a
+ * closed oriented 2-manifold exactly if the triangles around each are one fan. Sums are exact, so
+ * they have the same digits for any number of threads. scene: of the field. *figures is written on
+ * CSGM_OK. With ranks (csgmesh/ranks.h): CSGM_ERR_ARGUMENT. */
 CSGM_API csgm_status csgm_mesh_build_file_figures(csgm_context *context, const csgm_scene *scene,
                                                   const csgm_field *field,
                                                   const csgm_mesh_options *options,

@@ -14,6 +14,7 @@
 #include "csgmesh/figures.h"
 #include "io/formats.h"
 #include "io/stream.h"
+#include "mesh/collect.h"
 #include "mesh/figures/figures.h"
 #include "mesh/inspect.h"
 #include "mesh/mesh.h"
@@ -142,10 +143,26 @@ static csgm_status refuse_to_keep(csgm_context *context)
     return CSGM_ERR_UNSUPPORTED;
 }
 
-/* Without the memory for it, too, the file can be written. */
+/* Of equal cells, the figures of runs on their way into memory: as a rule nothing else has to look
+ * at the mesh. */
+static csgm_status collect_mesh(order *o, csgm_mesh **out)
+{
+    csg_mesh_collector collector = {.context = o->context};
+    csg_mesh_receiver receiver = csg_mesh_collector_receiver(&collector);
+    csgm_status status = build_with_figures(o, &receiver);
+    if (status == CSGM_OK)
+        *out = collector.mesh;
+    else
+        csg_mesh_destroy(collector.mesh);
+    return status;
+}
+
+/* What is not known yet. Without the memory for it, too, the file can be written. */
 static csgm_status find_figures(order *o, const csgm_mesh_view *view)
 {
     csgm_mesh_figures *f = o->figures;
+    if (f->is_checked)
+        return CSGM_OK;
     csgm_status status = csg_mesh_inspect(o->context, view, 0, &f->check);
     f->is_checked = status == CSGM_OK;
     f->max_abs_field = csgm_mesh_max_abs_field(o->scene, view, &f->vertices_measured);
@@ -155,7 +172,10 @@ static csgm_status find_figures(order *o, const csgm_mesh_view *view)
 static csgm_status build_and_write(order *o)
 {
     csgm_mesh *mesh;
-    csgm_status status = csg_mesh_build(o->context, o->field, &o->options, &mesh, &o->stats);
+    bool is_looked_at = o->figures && csg_mesh_can_stream(o->field, &o->options);
+    csgm_status status = is_looked_at
+                             ? collect_mesh(o, &mesh)
+                             : csg_mesh_build(o->context, o->field, &o->options, &mesh, &o->stats);
     if (status != CSGM_OK)
         return status;
     csgm_mesh_view view = csg_mesh_view(mesh);

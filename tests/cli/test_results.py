@@ -185,10 +185,10 @@ class Statistics(cli.CliTest):
     def test_streamed(self):
         """Of a mesh that goes by there are the figures of the one in memory, with the same digits for any number of threads."""
         self.write("a.txt", "difference() { union(blend = 3) { sphere(10); translate([9, 3, 2]) sphere(6); } cylinder(h = 30, r = 2, center = true); }\n")
-        for name in ("a.ply", "a.stl", "a.glb"):
+        for name in ("a.ply", "a.stl", "a.glb", "a.obj"):  # the last one through a mesh in memory
             options = ("a.txt", "-r", "90", "-o", name)
             full = self.stats(*options, "--stats-full")
-            for more in (["-j", "1"], ["-j", "3"], ["-j", "2", "--max-memory", "8M"], ["--bounds=-20,-20,0,20,20,20"]):
+            for more in (["-j", "1"], ["-j", "3"], ["-j", "2", "--max-memory", "32M" if name == "a.obj" else "8M"], ["--bounds=-20,-20,0,20,20,20"]):
                 with self.subTest((name, more)):
                     if more[0] == "--bounds=-20,-20,0,20,20,20":
                         full = self.stats(*options, *more, "--stats-full")

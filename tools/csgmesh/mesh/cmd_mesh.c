@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * csgmesh [mesh] SCENE -o FILE...: scene -> mesh -> files, statistics and a dependency rule.
  */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,10 +110,15 @@ static bool can_be_streamed(const cli_options *options)
     return can_go_straight_to_file(options) && has_equal_cells(options) && is_streamed(options, 0);
 }
 
-static int stream_with_statistics(cli_app *app, cli_work *work, cli_report *report)
+/* The mesh's figures are known when the file is there: of one that is streamed, or of equal cells
+ * on their way into memory. */
+static int file_with_statistics(cli_app *app, cli_work *work, cli_report *report)
 {
+    double begin_s = cli_now_s();
     int status = mesh_to_file(app, work, report);
-    report->write_s = work->stats.mesh_s; /* one and the same */
+    double before_s = work->compile_s + work->stats.octree_s + work->stats.mesh_s;
+    report->write_s = is_streamed(app->options, 0) ? work->stats.mesh_s /* one and the same */
+                                                   : fmax(cli_now_s() - begin_s - before_s, 0);
     report->peak_rss_bytes = cli_peak_rss_bytes();
     return status == CLI_DONE ? cli_statistics_write(app, work, report) : status;
 }
@@ -128,7 +134,7 @@ static int mesh_in_memory(cli_app *app, cli_work *work, cli_report *report)
     app->does_without_memory = false;
     if (status == CLI_DONE)
         return write_all(app, work, report);
-    return has_other_way && app->ran_out_of_memory ? stream_with_statistics(app, work, report)
+    return has_other_way && app->ran_out_of_memory ? file_with_statistics(app, work, report)
                                                    : status;
 }
 
@@ -211,8 +217,9 @@ static int mesh_scene(cli_app *app, const char *path)
         is_meshed = false;
     } else if (is_meshed && can_go_straight_to_file(app->options) && !app->options->stats) {
         status = mesh_to_file(app, &work, &report);
-    } else if (is_meshed && can_be_streamed(app->options) && !app->options->stats_full) {
-        status = stream_with_statistics(app, &work, &report);
+    } else if (is_meshed && can_go_straight_to_file(app->options) &&
+               has_equal_cells(app->options) && !app->options->stats_full) {
+        status = file_with_statistics(app, &work, &report);
     } else if (is_meshed) {
         status = mesh_in_memory(app, &work, &report);
     }
