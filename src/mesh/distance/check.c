@@ -272,13 +272,17 @@ static bool bisect(const csg_vec3 v[3], double least, csg_vec3 (*halves)[3])
     return true;
 }
 
-/* Depth first: the stack holds one half for each time the piece was cut. */
-static bool settle_piece(const proof *p, settler *s, const piece *whole)
+static const double LEAST_SIDE = 0.0625; /* of the error: shorter ones are not cut */
+
+/* Settles the halves of one that stays open as a whole. Depth first: the stack holds one half for
+ * each time the piece was cut. */
+static bool settle_halves(const proof *p, settler *s, const piece *whole)
 {
     csg_vec3 stack[STACK][3];
-    size_t top = 1;
-    uint64_t most = s->pieces + MOST_OF_ONE;
-    memcpy(stack[0], whole->at, sizeof whole->at);
+    size_t top = 2;
+    uint64_t most = s->pieces + MOST_OF_ONE - 1; /* the whole was one */
+    if (!bisect(whole->at, LEAST_SIDE * p->error, stack))
+        return false;
     while (top) {
         csg_vec3 v[3];
         memcpy(v, stack[--top], sizeof v);
@@ -286,7 +290,7 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
         if (what == SETTLED)
             continue;
         if (what == FAR || top + 2 > STACK || s->pieces > most ||
-            !bisect(v, p->error / 16, &stack[top]))
+            !bisect(v, LEAST_SIDE * p->error, &stack[top]))
             return false;
         top += 2;
     }
@@ -363,7 +367,7 @@ static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *piec
             continue;
         if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
             disc_of(pieces[i].at).radius < 2 * p->error) {
-            pieces[i].open = !settle_piece(p, s, &pieces[i]);
+            pieces[i].open = !settle_halves(p, s, &pieces[i]);
             continue;
         }
         cut_in_eight(&pieces[i], parts);
