@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/mesh_codes.h"
+#include "mesh/distance/effort.h"
 #include "mesh/mesh_support.h"
 
 static unsigned scene_count = 6, first_scene = 0;
@@ -380,6 +381,31 @@ static void test_cells_too_large(void **state)
     mesh_case_end(&c);
 }
 
+/* Long tapes, and shapes, use up what a search may take sooner: a digit of 43 balls under an
+ * exterior blend was looked through for hours. */
+static void test_effort(void **state)
+{
+    enum { BALLS = 40, SHAPES = 40 };
+    csg_tape_node shapes[SHAPES] = {{.op = CSG_OP_SHAPE}};
+    mesh_case c;
+    mesh_case_begin(&c, 1);
+    csg_node_id all = make_sphere(&c, 1);
+    mesh_case_compile(&c, all);
+    assert_int_equal(csg_effort_of(&c.field->tape), 1);
+    mesh_case_end(&c);
+    mesh_case_begin(&c, 1);
+    all = make_sphere(&c, 1);
+    for (int i = 1; i < BALLS; i++)
+        all = joined(&c, CSG_NODE_UNION, ROUND(0.1), all, moved(&c, make_sphere(&c, 1), i, 0, 0));
+    mesh_case_compile(&c, all);
+    assert_true(csg_effort_of(&c.field->tape) >= BALLS / 16 + 1);
+    for (int i = 0; i < SHAPES; i++)
+        shapes[i] = shapes[0];
+    const csg_tape tape = {.nodes = shapes, .count = SHAPES};
+    assert_true(csg_effort_of(&tape) >= 4 * csg_effort_of(&c.field->tape));
+    mesh_case_end(&c);
+}
+
 static void test_out_of_memory(void **state)
 {
     mesh_case c;
@@ -480,6 +506,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_simplify),
         cmocka_unit_test(test_improve),
         cmocka_unit_test(test_cells_too_large),
+        cmocka_unit_test(test_effort),
         cmocka_unit_test(test_out_of_memory),
         cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_creases_cut_off),

@@ -165,6 +165,19 @@ static void what_touches(void **state)
     check_around(3, 2000);
 }
 
+/* As in letters: sides of several strokes, and of several letters, lie on one line. */
+static void strokes_on_one_line(void **state)
+{
+    for (int i = 0; i < 5; i++) {
+        double left = 0.1 * i, bottom = i % 2 ? 0.3 : -0.7;
+        add_rectangle(&outline, left, 0, left + 0.07, 1);
+        add_rectangle(&outline, left, bottom - 2, left + 0.03 * (i + 1), bottom - 1);
+    }
+    make_region();
+    assert_true(value_of(0.035, 0.5) > 0 && value_of(0.085, 0) < 0);
+    check_around(3, 4000);
+}
+
 static void crossings_by_a_rounding_error(void **state)
 {
     const csg_vec2 wall[] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}},
@@ -426,6 +439,7 @@ int main(void)
         TEST(lattice_polygons),
         TEST(scribbles),
         TEST(what_touches),
+        TEST(strokes_on_one_line),
         TEST(crossings_by_a_rounding_error),
         TEST(differences_stay_below_distances),
         TEST(batches_are_their_points),

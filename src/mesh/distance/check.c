@@ -10,6 +10,7 @@
 #include "base/rank_loop.h"
 #include "field/point.h"
 #include "grid/octree/octree.h"
+#include "mesh/distance/effort.h"
 #include "mesh/distance/slopes.h"
 
 enum { PIECES = 1 << 11, GROUPS = PIECES / CSG_OCTANTS, STACK = 64 };
@@ -17,8 +18,9 @@ enum { PIECES = 1 << 11, GROUPS = PIECES / CSG_OCTANTS, STACK = 64 };
 /* Small triangles that a piece is cut into, along a side. */
 enum { MOST_CUTS = 12, MOST_PLACES = (MOST_CUTS + 1) * (MOST_CUTS + 2) / 2 + CSG_LANES };
 
-/* Looked at before the proof is given up: all in all, and of one piece that was cut. */
-static const uint64_t MOST_PIECES = 6000000, MOST_OF_ONE = 2000;
+/* Looked at before the proof is given up: all in all, by their effort, and of one piece that was
+ * cut. */
+static const uint64_t MOST_EFFORT = 6000000, MOST_OF_ONE = 2000;
 
 typedef struct piece {
     csg_vec3 at[3], normal;
@@ -31,12 +33,12 @@ typedef struct settler {
     csg_arena arena;
     csg_tape tape; /* of the piece at hand */
     float *scratch;
-    uint64_t pieces, by_cone;
+    uint64_t pieces, by_cone, effort;
 } settler;
 
 /* What eight pieces took, with their parts. */
 typedef struct group_work {
-    uint64_t pieces, by_cone;
+    uint64_t pieces, by_cone, effort;
 } group_work;
 
 typedef struct proof {
@@ -227,6 +229,7 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
     bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, &near, s->scratch,
                                     p->scratch_floats, &gradients);
     s->pieces++;
+    s->effort += csg_effort_of(&s->tape);
     if (known && settles_by_cone(p, s, d, v, &gradients)) {
         s->by_cone++;
         return SETTLED;
@@ -269,13 +272,17 @@ static bool bisect(const csg_vec3 v[3], double least, csg_vec3 (*halves)[3])
     return true;
 }
 
-/* Depth first: the stack holds one half for each time the piece was cut. */
-static bool settle_piece(const proof *p, settler *s, const piece *whole)
+static const double LEAST_SIDE = 0.0625; /* of the error: shorter ones are not cut */
+
+/* Settles the halves of one that stays open as a whole. Depth first: the stack holds one half for
+ * each time the piece was cut. */
+static bool settle_halves(const proof *p, settler *s, const piece *whole)
 {
     csg_vec3 stack[STACK][3];
-    size_t top = 1;
-    uint64_t most = s->pieces + MOST_OF_ONE;
-    memcpy(stack[0], whole->at, sizeof whole->at);
+    size_t top = 2;
+    uint64_t most = s->pieces + MOST_OF_ONE - 1; /* the whole was one */
+    if (!bisect(whole->at, LEAST_SIDE * p->error, stack))
+        return false;
     while (top) {
         csg_vec3 v[3];
         memcpy(v, stack[--top], sizeof v);
@@ -283,7 +290,7 @@ static bool settle_piece(const proof *p, settler *s, const piece *whole)
         if (what == SETTLED)
             continue;
         if (what == FAR || top + 2 > STACK || s->pieces > most ||
-            !bisect(v, p->error / 16, &stack[top]))
+            !bisect(v, LEAST_SIDE * p->error, &stack[top]))
             return false;
         top += 2;
     }
@@ -360,7 +367,7 @@ static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *piec
             continue;
         if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
             disc_of(pieces[i].at).radius < 2 * p->error) {
-            pieces[i].open = !settle_piece(p, s, &pieces[i]);
+            pieces[i].open = !settle_halves(p, s, &pieces[i]);
             continue;
         }
         cut_in_eight(&pieces[i], parts);
@@ -378,10 +385,11 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
     size_t first = group * CSG_OCTANTS, count = p->count - first;
     const csg_tape *whole = &p->remesh->probe.marching->field->tape;
     settler *s = &p->settlers[worker];
-    const group_work before = {s->pieces, s->by_cone};
+    const group_work before = {s->pieces, s->by_cone, s->effort};
     bool done =
         settle_eight(p, s, whole, p->pieces + first, count < CSG_OCTANTS ? count : CSG_OCTANTS, 0);
-    p->groups[group] = (group_work){s->pieces - before.pieces, s->by_cone - before.by_cone};
+    p->groups[group] = (group_work){s->pieces - before.pieces, s->by_cone - before.by_cone,
+                                    s->effort - before.effort};
     if (done)
         return !csg_mesh_should_stop(p->remesh->watch);
     atomic_store(&p->out_of_memory, true);
@@ -450,8 +458,9 @@ static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof 
     for (size_t i = 0; i < groups; i++) {
         p->looked_at.pieces += p->groups[i].pieces;
         p->looked_at.by_cone += p->groups[i].by_cone;
+        p->looked_at.effort += p->groups[i].effort;
     }
-    out->stopped = p->looked_at.pieces > MOST_PIECES;
+    out->stopped = p->looked_at.effort > MOST_EFFORT;
     return CSGM_OK;
 }
 
@@ -538,6 +547,7 @@ static csgm_status check_by_field(const csg_remesh *remesh, double error, bool p
         status = settle_pieces(&p, pending, out);
     out->pieces += p.looked_at.pieces;
     out->by_cone += p.looked_at.by_cone;
+    out->effort += p.looked_at.effort;
     end(&p);
     return status;
 }
@@ -546,12 +556,12 @@ csgm_status csg_check_distance(const csg_remesh *remesh, const csg_begun *begun,
                                bool patient, uint8_t *pending, csg_distance_proof *out)
 {
     static const double ROUND_SHARE = 0.2; /* of what is left of the stage, for progress */
-    *out = (csg_distance_proof){0};
+    *out = (csg_distance_proof){.effort = out->effort};
     csg_mesh_take(remesh->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
     if (begun->tree.count) {
         csg_begun_proof found;
         csgm_status status = csg_begun_check(begun, remesh, error, pending, &found);
-        *out = (csg_distance_proof){.pieces = found.pieces};
+        out->pieces = found.pieces;
         if (status != CSGM_OK || !found.open)
             return status;
         if (csg_begun_is_decisive(begun, error)) {

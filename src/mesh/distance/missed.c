@@ -9,10 +9,12 @@
 #include "base/rank_loop.h"
 #include "field/point.h"
 #include "grid/octree/octree.h"
+#include "mesh/distance/effort.h"
 #include "mesh/distance/slopes.h"
 #include "mesh/plane.h"
 
-/* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. */
+/* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. They
+ * count by what they cost (effort.h). */
 enum {
     MOST_POINTS = 4096,
     MOST_FAR = 16384, /* with those that are farther than the error */
@@ -46,7 +48,7 @@ typedef struct worker {
     float *scratch;
     csg_missed_point *points;
     size_t count, capacity;
-    uint64_t cubes; /* in the frontier cube at hand */
+    uint64_t cubes; /* in the frontier cube at hand, by their effort */
     segment *segment;
 } worker;
 
@@ -82,8 +84,7 @@ typedef struct cube {
     bool is_bent;  /* where it is one: it may have a crease, or a narrow fillet */
 } cube;
 
-/* ---- the field in a cube -----------------------------------------------------------------------
- */
+/* ---- the field in a cube --------------------------------------------------------------------- */
 
 /* Values this small are zero. */
 static double noise_of(const walk *w)
@@ -218,8 +219,7 @@ static double leaning_of(const csg_gradients *gradients)
     return has_axis ? cone.least / steepest : 0;
 }
 
-/* ---- the walk ----------------------------------------------------------------------------------
- */
+/* ---- the walk -------------------------------------------------------------------------------- */
 
 static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t triangle)
 {
@@ -497,7 +497,8 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
     if (done && count && may_be_sheet(w, children[0].half))
         find_surfaces_of_children(w, s, parent, children, count);
     for (uint32_t i = 0; i < count && done; i++) {
-        if (++s->cubes > w->most_cubes || depth == DEEPEST) {
+        s->cubes += csg_effort_of(&children[i].tape);
+        if (s->cubes > w->most_cubes || depth == DEEPEST) {
             s->segment->unfinished = true;
             break;
         }
@@ -534,8 +535,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
     return !csg_mesh_should_stop(w->remesh->watch);
 }
 
-/* ---- all of it ---------------------------------------------------------------------------------
- */
+/* ---- all of it ------------------------------------------------------------------------------- */
 
 static bool begin(walk *w)
 {

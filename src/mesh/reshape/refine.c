@@ -486,11 +486,14 @@ static bool refine_open(refiner *f)
 static csgm_status refine_in_rounds(refiner *f, double error, csg_distance_proof *out)
 {
     enum { MOST_ROUNDS = 16, MOST_IDLE = 2, FEW = 32, MOST_IDLE_OF_FEW = 5 };
+    static const uint64_t MOST_EFFORT = 8000000; /* of all rounds; then the last one's word holds */
     csg_remesh *r = f->remesh;
+    out->effort = 0;
     csgm_status status = csg_check_distance(r, &f->begun, error, false, f->pending, out);
     uint64_t least = UINT64_MAX / 10;
     int idle = 0; /* rounds that settled hardly any */
-    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped;
+    for (int round = 0; round < MOST_ROUNDS && status == CSGM_OK && out->open && !out->stopped &&
+                        out->effort < MOST_EFFORT;
          round++) {
         idle += out->open * 10 >= least * 9;
         if (idle > (out->open > FEW ? MOST_IDLE : MOST_IDLE_OF_FEW))
@@ -500,7 +503,7 @@ static csgm_status refine_in_rounds(refiner *f, double error, csg_distance_proof
             break;
         status = csg_check_distance(r, &f->begun, error, false, f->pending, out);
     }
-    if (status == CSGM_OK && out->open && !out->stopped)
+    if (status == CSGM_OK && out->open && !out->stopped && out->effort < MOST_EFFORT)
         status = csg_check_distance(r, &f->begun, error, true, f->pending, out);
     return status;
 }

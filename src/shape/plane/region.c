@@ -129,19 +129,13 @@ static double sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
 }
 
 /* Batches come from lattices, where many points differ in z only: points are told apart by the bits
- * of x and y, and one that was met is found again in a few places. Where that fails it is computed
- * again, which gives the same. */
-enum { MOST_POINTS = 256, PLACES = 256, FEW_POINTS = 32, FEW_PLACES = 16 };
-
-typedef struct place {
-    uint64_t key; /* bits of x and y */
-    uint32_t number;
-    bool is_set;
-} place;
+ * of x and y, in a table that is at most half full. */
+enum { MOST_POINTS = 256, MOST_PLACES = 2 * MOST_POINTS, NO_NUMBER = UINT16_MAX };
 
 /* Points that differ in x or y. */
 typedef struct distinct {
     size_t count;
+    uint64_t key[MOST_POINTS]; /* bits of x and y */
     double x[MOST_POINTS], y[MOST_POINTS];
     csg_segment_hit nearest[MOST_POINTS];
     uint32_t of[MOST_POINTS]; /* per point of the batch: its number */
@@ -157,20 +151,24 @@ static uint64_t key_of(float x, float y)
 
 static void tell_apart(const float *x, const float *y, size_t count, distinct *d)
 {
-    place places[PLACES];
-    size_t place_count = count < FEW_POINTS ? FEW_PLACES : PLACES;
-    for (size_t i = 0; i < place_count; i++)
-        places[i].is_set = false;
+    uint16_t places[MOST_PLACES]; /* the number of who is there */
+    size_t place_count = 32;
+    while (place_count < 2 * count)
+        place_count *= 2;
+    memset(places, 0xFF, place_count * sizeof *places);
     d->count = 0;
     for (size_t i = 0; i < count; i++) {
         uint64_t key = key_of(x[i], y[i]);
-        place *at = &places[(key * 0x9E3779B97F4A7C15u >> 48) % place_count];
-        if (!at->is_set || at->key != key) {
-            *at = (place){key, (uint32_t)d->count, true};
+        size_t at = (size_t)(key * 0x9E3779B97F4A7C15u >> 48) & (place_count - 1);
+        while (places[at] != NO_NUMBER && d->key[places[at]] != key)
+            at = (at + 1) & (place_count - 1);
+        if (places[at] == NO_NUMBER) {
+            places[at] = (uint16_t)d->count;
+            d->key[d->count] = key;
             d->x[d->count] = (double)x[i];
             d->y[d->count++] = (double)y[i];
         }
-        d->of[i] = at->number;
+        d->of[i] = places[at];
     }
 }
 

@@ -37,6 +37,16 @@ static bool is_apart(const csg_segment_tree *tree, uint32_t segment, csg_vec2 a,
     return (left_a > 0 && left_b > 0) || (left_a < 0 && left_b < 0);
 }
 
+/* Whether both places are beyond the same end of the segment, along it: so are two strokes of a
+ * letter that lie on one line. */
+static bool is_beyond(const inquiry *in, uint32_t segment, csg_vec2 a, csg_vec2 b)
+{
+    csg_segment_place at_a = csg_segment_locate(in->tree, segment, a.x, a.y);
+    csg_segment_place at_b = csg_segment_locate(in->tree, segment, b.x, b.y);
+    return fmax(at_a.along, at_b.along) < -in->reach ||
+           fmin(at_a.along, at_b.along) > at_a.length + in->reach;
+}
+
 /* Whether the segments keep their distance; where they share a corner, their other ends do. */
 static bool is_clear_of(const inquiry *in, uint32_t other)
 {
@@ -51,7 +61,8 @@ static bool is_clear_of(const inquiry *in, uint32_t other)
                    (!is_next && distance_to(tree, other, s->to) <= in->reach);
     if (is_near || is_next || is_previous)
         return !is_near;
-    return is_apart(tree, in->segment, o->from, o->to) || is_apart(tree, other, s->from, s->to);
+    return is_apart(tree, in->segment, o->from, o->to) || is_apart(tree, other, s->from, s->to) ||
+           is_beyond(in, in->segment, o->from, o->to) || is_beyond(in, other, s->from, s->to);
 }
 
 static bool ask(void *user, uint32_t other)
