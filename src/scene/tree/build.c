@@ -155,8 +155,9 @@ csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const cs
         node.flags |= CSG_FLAG_FLAT;
     if (makes_soft(&node, soft))
         node.flags |= CSG_FLAG_SOFT;
-    bool is_ended =
-        node.kind == CSG_NODE_INTERSECTION && csg_blend_is_sharp(node.blend) && some_end;
+    bool is_sharp = csg_blend_is_sharp(node.blend);
+    bool is_ended = csg_node_is_operator(node.kind) && /* blends have ended their operands' */
+                    (!is_sharp || (node.kind == CSG_NODE_INTERSECTION && some_end));
     if ((node.flags & CSG_FLAG_SOFT) || (plateau && !is_ended))
         node.flags |= CSG_FLAG_PLATEAU;
     for (size_t i = 0; i < count; i++)
