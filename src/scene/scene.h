@@ -70,7 +70,9 @@ typedef struct csg_look {
 /* What an inner node says of colour and material, where the outer ones say nothing. */
 void csg_look_take_inner(csg_look *outer, const csg_look *inner);
 
-enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2 };
+/* PLATEAU: while a scene is built, the field may stay above a value however far away
+ * (tree/build_ends.c). */
+enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2, CSG_FLAG_PLATEAU = 4 };
 
 /* What holds operands of a fillet: half-spaces with this normal, or, where is_round, cylinders
  * without end around the axis through `foot` along it. */

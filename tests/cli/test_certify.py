@@ -115,6 +115,15 @@ class Certify(cli.CliTest):
                     self.assertEqual(name, "gap below letters")
                     self.assertLess(abs(place["at"][2] - 2.01), 0.7)
 
+    def test_varying_radius(self):
+        """Nearly all cells have a cone, which the derivatives of one of the two solids must not spoil where it is far below."""
+        self.write("rib.txt", "union(blend = function (p) 2 + p.x / 10) { cube([40, 20, 4]); translate([0, 8, 0]) cube([40, 4, 20]); }\n")
+        result = self.run_in("rib.txt", "-r", "32", "--certify", "--stats")
+        self.assert_status(result, 0)
+        stats = json.loads(result.stdout)["certify"]
+        self.assertEqual((stats["unresolved"], stats["missed"]), (0, 0))
+        self.assertLess(stats["refined"], stats["crease"] / 20)
+
     def test_report(self):
         self.write("sheet.txt", SHEET)
         result = self.run_in("sheet.txt", "--certify", "-r", "64", "--stats")

@@ -8,10 +8,24 @@ import math
 
 import cli
 
+
+def turned_block(size):
+    """A box as a polyhedron whose faces are along no axis of any frame."""
+    def turned(x, y, z):
+        a, b = math.radians(33), math.radians(21)
+        x, y = x * math.cos(a) - y * math.sin(a), x * math.sin(a) + y * math.cos(a)
+        return [x, y * math.cos(b) - z * math.sin(b), y * math.sin(b) + z * math.cos(b)]
+    points = [turned(*(size[axis] * (k >> axis & 1) for axis in range(3))) for k in range(8)]
+    return f"polyhedron({points}, [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]);"
+
+
 # scene without its blend, radius, volume that the fillet adds (None: not known in closed form)
 ARC = 1 - math.pi / 4  # of a right angle, times r^2
 SCENES = {
     "bracket": ("cube([40, 20, 5]); cube([5, 20, 40]);", 3, ARC * 9 * 20),
+    "bracket of polyhedra": (turned_block([40, 20, 5]) + turned_block([5, 20, 40]), 3, ARC * 9 * 20),
+    "bracket of outlines": ("linear_extrude(20) rotate(33) polygon([[0, 0], [40, 0], [40, 5], [0, 5]]);"
+                            "linear_extrude(20) rotate(33) polygon([[0, 0], [5, 0], [5, 40], [0, 40]]);", 3, ARC * 9 * 20),
     "plates apart": ("cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]);", 8, 0),
     "box on box": ("cube([10, 8, 5]); translate([0, 0, 5]) cube([10, 8, 4]);", 2, 0),
     "one axis": ("cylinder(h = 9, r = 4); translate([0, 0, 9]) cylinder(h = 6, r = 4);", 2, 0),

@@ -91,6 +91,28 @@ static void what_is_far_away_changes_nothing(void **state)
         }
 }
 
+/* Nor does a figure of the plane. */
+static void figures_far_away_change_nothing(void **state)
+{
+    static const char *const figures[] = {
+        "soft() circle(2);",
+        "union(blend = soft_sum()) { soft() circle(2); translate([2, 0]) soft() circle(1.5); }",
+        "union() { square(1); translate([0, 90]) scale(2) { soft() circle(2); circle(1); } }",
+    };
+    (void)state;
+    csg_random random = {4};
+    for (size_t i = 0; i + 1 < BLENDS; i++) /* radii vary between solids alone */
+        for (size_t k = 0; k < sizeof figures / sizeof *figures; k++) {
+            compile("linear_extrude(100, center = true) %s(blend = %s) { circle(5); "
+                    "translate([500, 0]) { %s } }",
+                    (i + k) % 2 ? "union" : "difference", blends[i], figures[k]);
+            for (int n = 0; n < POINTS; n++) {
+                csg_vec3 p = random_point(&random, 6);
+                assert_true(fabs(value_at(p) - (5 - sqrt(p.x * p.x + p.y * p.y))) < 1e-14);
+            }
+        }
+}
+
 /* A ball beside another ball that is soft: parabola(9) in closed form, wherever the soft field is
  * above its plateau. */
 static void what_is_near_blends_by_its_own_field(void **state)
@@ -169,6 +191,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_far_away_changes_nothing),
+        cmocka_unit_test(figures_far_away_change_nothing),
         cmocka_unit_test(what_is_near_blends_by_its_own_field),
         cmocka_unit_test(fields_stay_lipschitz),
         cmocka_unit_test(what_is_not_needed_is_not_made),

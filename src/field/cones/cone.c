@@ -162,33 +162,50 @@ static double most_shares(const csg_tape *tape)
     return most;
 }
 
-static bool try_axis(const csg_pruner *room, const csg_tape *tape, const csg_cone_leaves *leaves,
-                     csg_cone *out)
+/* Takes the axis if the field climbs faster along it than along the best so far. */
+static void try_axis(const csg_pruner *room, const csg_tape *tape, const csg_cone_leaves *leaves,
+                     const double axis[3], csg_cone *best)
 {
-    return csg_cone_along(tape, leaves, room->low, room->high, out->axis, &out->least, &out->most,
-                          &out->is_crease);
+    csg_cone made = {.is_crease = best->is_crease};
+    if (!csg_cone_along(tape, leaves, room->low, room->high, axis, &made.least, &made.most,
+                        &made.is_crease))
+        return;
+    best->is_crease = made.is_crease;
+    if (!(made.least > best->least))
+        return;
+    best->least = made.least;
+    best->most = made.most;
+    for (int k = 0; k < 3; k++)
+        best->axis[k] = axis[k];
 }
 
-/* Along the direction that suits all leaves, where there is one, or the gradient at the centre. */
+/* The steepest of three directions: the one that suits all leaves, where there is one, the gradient
+ * at the centre, and what suits those leaves that are heeded. */
 static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
                        const csg_cone_leaves *leaves, csg_cone *out)
 {
     /* cubes around the ball, which they are given by the balls around them */
     float reach = (float)(radius * 1.7320508 * (1 + 1e-6));
+    csg_cone by;
+    csg_cone_balls heavy;
     if (!room)
         return false;
     out->out_of_memory = !csg_prune_cube(room, tape, c, reach);
     if (out->out_of_memory)
         return false;
+    out->least = 0;
+    if (csg_cone_find_axis(&leaves->balls, &by))
+        try_axis(room, tape, leaves, by.axis, out);
     csg_vec3 w = csg_tape_gradient_at(room->kernel, tape, csg_vec3_from_floats(c), room->scratch,
                                       room->scratch_capacity);
     double norm = csg_vec3_norm(w);
-    if (csg_cone_find_axis(&leaves->balls, out) && try_axis(room, tape, leaves, out))
-        return true;
-    if (!(norm > 1e-6))
-        return false;
-    out->axis[0] = w.x / norm, out->axis[1] = w.y / norm, out->axis[2] = w.z / norm;
-    return try_axis(room, tape, leaves, out);
+    const double up[3] = {w.x / norm, w.y / norm, w.z / norm};
+    if (norm > 1e-6)
+        try_axis(room, tape, leaves, up, out);
+    if (csg_cone_lighten(tape, leaves, room->low, room->high, &heavy) &&
+        csg_cone_find_axis(&heavy, &by))
+        try_axis(room, tape, leaves, by.axis, out);
+    return out->least > 0;
 }
 
 bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,

@@ -10,7 +10,8 @@
  *   ARC              G_1 x + G_2 y = G (Euler): they add up to G / max at least, which is 1 and
  *                    more for a union, and G / min at most
  *   SOFTEN, N        times the range of the function's slope
- *   COMBINE          the formula's own derivative in ranges (cone_formula.c)
+ *   COMBINE          the formula's own derivative in ranges (cone_formula.c), and the operands'
+ *                    times its partial derivatives
  */
 #include "field/cones/cone_along.h"
 
@@ -323,35 +324,65 @@ static bool deliver(const csg_tape *tape, const csg_tape_node *node, slope_range
     return true;
 }
 
+/* The values of the operands of a combine node. False: more than three, or mirrored. */
+static bool operands_of(const csg_tape *tape, const csg_tape_node *node, const float *low,
+                        const float *high, csg_cone_box *at)
+{
+    const float *own = tape->parameters + node->parameters;
+    const csg_tape_node *child = node - 1;
+    *at = (csg_cone_box){{0, 0, 0}, {0, 0, 0}};
+    for (uint32_t k = node->arity; k-- > 0; child -= child->size) {
+        ptrdiff_t place = (child - tape->nodes) * CSG_OCTANTS;
+        float scale = own[CSG_LEAF_FRAME + 4 * k];
+        if (k > 2 || scale < 0)
+            return false;
+        at->low[k] = scale * low[place] - 0x1p-20f * absolute(scale * low[place]);
+        at->high[k] = scale * high[place] + 0x1p-20f * absolute(scale * high[place]);
+    }
+    return true;
+}
+
+/* Between which its partial derivatives by the operands lie. */
+static bool shares_of(const csg_tape *tape, const csg_tape_node *node, const csg_cone_box *at,
+                      csg_cone_box *shares, bool *has_edges)
+{
+    const float *own = tape->parameters + node->parameters;
+    const csg_cone_box units[3] = {
+        {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}}};
+    return csg_cone_formula(tape, &tape->formulas[(uint32_t)own[CSG_LEAF_OWN_AFFINE]], at, units,
+                            shares, has_edges);
+}
+
+/* The chain rule twice, from the operands' derivatives on and from the result's by them: each loses
+ * what the other keeps. */
 static bool combine(const csg_tape *tape, const csg_tape_node *node, const float *low,
                     const float *high, stack *s, bool *has_edges)
 {
     const float *own = tape->parameters + node->parameters;
     const csg_tape_formula *formula = &tape->formulas[(uint32_t)own[CSG_LEAF_OWN_AFFINE]];
-    csg_cone_box at = {{0, 0, 0}, {0, 0, 0}}, seeds[3] = {{{0, 0, 0}, {0, 0, 0}}}, out;
-    const csg_tape_node *child = node - 1;
-    for (uint32_t k = node->arity; k-- > 0; child -= child->size) {
+    csg_cone_box at, seeds[3] = {{{0, 0, 0}, {0, 0, 0}}}, out, shares;
+    slope_range all = {.low = 0};
+    if (!operands_of(tape, node, low, high, &at) || !shares_of(tape, node, &at, &shares, has_edges))
+        return false;
+    for (uint32_t k = 0; k < node->arity; k++) {
         const slope_range *operand = &s->items[s->top - node->arity + k];
-        ptrdiff_t place = (child - tape->nodes) * CSG_OCTANTS;
         float scale = own[CSG_LEAF_FRAME + 4 * k];
-        if (k > 2 || scale < 0)
-            return false;
-        at.low[k] = scale * low[place] - 0x1p-20f * absolute(scale * low[place]);
-        at.high[k] = scale * high[place] + 0x1p-20f * absolute(scale * high[place]);
-        for (int c = 0; c < 3; c++)
-            seeds[k].low[c] = seeds[k].high[c] = 0;
         float size = scale * (float)operand->most, room = 0x1p-20f * size;
         seeds[k].low[0] = scale * (float)operand->low - room;
         seeds[k].high[0] = scale * (float)operand->high + room;
         seeds[k].low[1] = -size - room;
         seeds[k].high[1] = size + room;
+        slope_range one = {(double)seeds[k].low[0], (double)seeds[k].high[0],
+                           (double)seeds[k].high[1], 0, 0};
+        all = sum(all, scale_range(one, (double)shares.low[k], (double)shares.high[k]));
     }
     if (!csg_cone_formula(tape, formula, &at, seeds, &out, has_edges))
         return false;
     s->top -= node->arity;
-    slope_range r = {.low = (double)out.low[0],
-                     .high = (double)out.high[0],
-                     .most = largest_of(fabs((double)out.low[1]), fabs((double)out.high[1]))};
+    double most = largest_of(fabs((double)out.low[1]), fabs((double)out.high[1]));
+    slope_range r = {.low = largest_of((double)out.low[0], all.low),
+                     .high = least_of((double)out.high[0], all.high),
+                     .most = least_of(most, all.most)};
     double sigma = (double)own[CSG_LEAF_SIGMA];
     s->items[s->top++] = scale_range(r, sigma, sigma);
     return true;
@@ -407,4 +438,47 @@ bool csg_cone_along(const csg_tape *tape, const csg_cone_leaves *leaves, const f
     *least = s.items[0].low;
     *most = s.items[0].most;
     return s.top == 1 && *least > 0;
+}
+
+/* The leaves below each operand of a combine node that adds half of its gradient at most. */
+static void drop_light(const csg_tape *tape, uint32_t n, const float *low, const float *high,
+                       const uint32_t *first_leaf, bool *counts)
+{
+    const csg_tape_node *node = &tape->nodes[n], *child = node - 1;
+    csg_cone_box at, shares;
+    bool has_edges = false;
+    if (!operands_of(tape, node, low, high, &at) ||
+        !shares_of(tape, node, &at, &shares, &has_edges))
+        return;
+    for (uint32_t k = node->arity; k-- > 0; child -= child->size) {
+        bool is_light = larger(-shares.low[k], shares.high[k]) <= 0.5f;
+        uint32_t end = (uint32_t)(child - tape->nodes) + 1;
+        for (uint32_t i = first_leaf[end - child->size]; is_light && i < first_leaf[end]; i++)
+            counts[i] = false;
+    }
+}
+
+bool csg_cone_lighten(const csg_tape *tape, const csg_cone_leaves *leaves, const float *low,
+                      const float *high, csg_cone_balls *heavy)
+{
+    enum { MOST_NODES = 4 * CSG_CONE_MOST };
+    uint32_t first_leaf[MOST_NODES + 1], leaf = 0;
+    bool counts[CSG_CONE_MOST];
+    if (tape->count > MOST_NODES)
+        return false;
+    for (uint32_t n = 0; n < tape->count; n++) {
+        first_leaf[n] = leaf;
+        if (csg_op_is_leaf(tape->nodes[n].op))
+            counts[leaf++] = true;
+        first_leaf[n + 1] = leaf;
+        if (tape->nodes[n].op == CSG_OP_COMBINE)
+            drop_light(tape, n, low, high, first_leaf, counts);
+    }
+    heavy->count = 0;
+    for (uint32_t i = 0; i < leaf; i++) {
+        uint32_t end = i + 1 < leaf ? leaves->first[i + 1] : leaves->balls.count;
+        for (uint32_t k = leaves->first[i]; counts[i] && k < end; k++)
+            heavy->items[heavy->count++] = leaves->balls.items[k];
+    }
+    return heavy->count > 0 && heavy->count < leaves->balls.count;
 }

@@ -21,4 +21,10 @@ bool csg_cone_along(const csg_tape *tape, const csg_cone_leaves *leaves, const f
                     const float *high, const double axis[3], double *least, double *most,
                     bool *has_edges);
 
+/* The balls without those of operands that combine nodes hardly heed, as where a radius varies that
+ * of the radius, and of two solids the one that is far below: all along which the others climb may
+ * be a direction that these fall along. False: all are heeded, or none is. */
+bool csg_cone_lighten(const csg_tape *tape, const csg_cone_leaves *leaves, const float *low,
+                      const float *high, csg_cone_balls *heavy);
+
 #endif

@@ -3,9 +3,8 @@
  * the axes of every leaf below and of the fillet's own frame: faces of boxes, caps of cylinders,
  * slabs and extrusions are among them. How far the operands reach along a normal is found from the
  * leaves up, by their support functions and by the boxes of all nodes: never too little. Sorted, so
- * that the order of the operands does not matter.
- *
- * Faces of polyhedra and of outlines that are along no axis of theirs are not looked at.
+ * that the order of the operands does not matter. Those of the faces of polyhedra and outlines that
+ * have few come last.
  */
 #include "scene/operators/fillet_planes.h"
 
@@ -14,11 +13,14 @@
 
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
+#include "shape/plane/region.h"
+#include "shape/polyhedra/polyhedron.h"
 
 enum {
     AXES = 6,             /* both sides of each */
     MOST_PLANES = 24,     /* of one fillet */
     MOST_AXES = 8,        /* the same */
+    MOST_FACES = 16,      /* directions of a shape that is looked at: above it, it is round */
     MOST_WORK = 20000000, /* nodes times normals; above it the frame's own axes only */
 };
 
@@ -33,7 +35,7 @@ typedef struct search {
     double *reaches;
     /* those found */
     csg_vec3 *found;
-    size_t found_count, found_capacity;
+    size_t found_count, found_capacity, axes_count; /* the latter: not of shapes' faces */
     csg_fillet_end axes[MOST_AXES];
     size_t axis_count;
     /* of all fillets so far */
@@ -79,19 +81,24 @@ static bool is_near(csg_vec3 a, csg_vec3 b)
     return csg_vec3_norm(csg_vec3_sub(a, b)) < 1e-9;
 }
 
-/* The frame's own axes first, then the others in their order. */
-static void sort_normals(search *s)
+static size_t keep_new(search *s, size_t kept, size_t from, size_t to)
 {
-    size_t kept = AXES;
-    qsort(s->found + AXES, s->found_count - AXES, sizeof *s->found, compare_normals);
-    for (size_t i = AXES; i < s->found_count && kept < MOST_PLANES; i++) {
+    qsort(s->found + from, to - from, sizeof *s->found, compare_normals);
+    for (size_t i = from; i < to && kept < MOST_PLANES; i++) {
         bool is_new = true;
         for (size_t k = 0; k < kept && is_new; k++)
             is_new = !is_near(s->found[k], s->found[i]);
         if (is_new)
             s->found[kept++] = s->found[i];
     }
-    s->found_count = kept;
+    return kept;
+}
+
+/* The frame's own axes first, then the others in their order, those of shapes' faces last. */
+static void sort_normals(search *s)
+{
+    size_t kept = keep_new(s, AXES, AXES, s->axes_count);
+    s->found_count = keep_new(s, kept, s->axes_count, s->found_count);
 }
 
 static bool add_leaf_normals(search *s, const csg_node *node, const csg_affine *to_own)
@@ -103,6 +110,59 @@ static bool add_leaf_normals(search *s, const csg_node *node, const csg_affine *
     return add_normal(s, csg_affine_covector(to_own, csg_vec3_make(1, 0, 0))) &&
            add_normal(s, csg_affine_covector(to_own, csg_vec3_make(0, 1, 0))) &&
            add_normal(s, csg_affine_covector(to_own, csg_vec3_make(0, 0, 1)));
+}
+
+/* The directions of a shape's faces or edges, if they are few. */
+typedef struct faces {
+    csg_vec3 normals[MOST_FACES];
+    uint32_t count; /* above MOST_FACES: too many */
+} faces;
+
+static void add_face(faces *f, csg_vec3 n)
+{
+    double length = csg_vec3_norm(n);
+    if (!(length > 0) || f->count > MOST_FACES)
+        return;
+    n = csg_vec3_scale(n, 1 / length);
+    for (uint32_t i = 0; i < f->count; i++)
+        if (is_near(f->normals[i], n))
+            return;
+    if (f->count < MOST_FACES)
+        f->normals[f->count] = n;
+    f->count++;
+}
+
+static void find_faces(const csg_shape *shape, faces *f)
+{
+    f->count = 0;
+    if (shape->kind == CSG_SHAPE_POLYHEDRON) {
+        const csg_triangles *t = csg_polyhedron_triangles(shape);
+        for (size_t i = 0; i < t->count && f->count <= MOST_FACES; i++) {
+            csg_vec3 a = t->points[t->corners[i][0]], b = t->points[t->corners[i][1]];
+            csg_vec3 c = t->points[t->corners[i][2]];
+            add_face(f, csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a)));
+        }
+        return;
+    }
+    const csg_outline *o = csg_region_outline(shape);
+    for (size_t k = 0; k < o->loop_count; k++) {
+        size_t first = csg_outline_first(o, k);
+        for (size_t i = first; i < o->ends[k] && f->count <= MOST_FACES; i++) {
+            size_t next = i + 1 < o->ends[k] ? i + 1 : first;
+            add_face(f, csg_vec3_make(o->points[next].y - o->points[i].y,
+                                      o->points[i].x - o->points[next].x, 0));
+        }
+    }
+}
+
+static bool add_faces(search *s, const csg_node *node, const csg_affine *to_own)
+{
+    faces f;
+    find_faces(s->scene->shapes[node->payload], &f);
+    for (uint32_t i = 0; i < f.count && f.count <= MOST_FACES; i++)
+        if (!add_normal(s, csg_affine_covector(to_own, f.normals[i])))
+            return false;
+    return true;
 }
 
 static bool find_normals(search *s)
@@ -130,6 +190,11 @@ static bool find_normals(search *s)
             !add_leaf_normals(s, node, &inner))
             return false;
     }
+    s->axes_count = s->found_count;
+    for (size_t i = s->first; i < s->root; i++)
+        if (scene->nodes[i].kind == CSG_NODE_SHAPE && s->is_placed[i - s->first] &&
+            !add_faces(s, &scene->nodes[i], &s->to_own[i - s->first]))
+            return false;
     sort_normals(s);
     return true;
 }
@@ -251,6 +316,25 @@ static double children_reach(const search *s, const csg_node *node)
     return reach;
 }
 
+/* To its outermost corner; of very many it is not looked for. */
+static double shape_reach(const csg_shape *shape, csg_vec3 n)
+{
+    enum { MOST_POINTS = 1 << 16 };
+    double reach = -INFINITY;
+    if (shape->kind == CSG_SHAPE_POLYHEDRON) {
+        const csg_triangles *t = csg_polyhedron_triangles(shape);
+        for (size_t i = 0; i < t->point_count && t->point_count <= MOST_POINTS; i++)
+            reach = fmax(reach, csg_vec3_dot(n, t->points[i]));
+    } else {
+        const csg_outline *o = csg_region_outline(shape);
+        for (size_t i = 0; i < o->point_count && o->point_count <= MOST_POINTS; i++)
+            reach = fmax(reach, n.x * o->points[i].x + n.y * o->points[i].y);
+        if (n.z != 0)
+            return INFINITY;
+    }
+    return isfinite(reach) ? reach : INFINITY;
+}
+
 /* Of what stands below the fillet: INFINITY where it is not known. */
 static double node_reach(const search *s, size_t i)
 {
@@ -259,6 +343,8 @@ static double node_reach(const search *s, size_t i)
     csg_vec3 n = s->normals[i - s->first];
     if (csg_node_is_named_primitive(node->kind))
         return csg_primitive_of(node->kind)->support(csg_scene_parameters(scene, node), n);
+    if (node->kind == CSG_NODE_SHAPE)
+        return shape_reach(scene->shapes[node->payload], n);
     if (node->kind == CSG_NODE_TRANSFORM)
         return children_reach(s, node) +
                csg_vec3_dot(n, csg_vec3_make(scene->transforms[node->payload].t[0],

@@ -139,9 +139,13 @@ csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const cs
     node.child_count = (uint32_t)count;
     bool flat = count > 0;
     bool soft = count > 0;
+    bool some_end = false, plateau = false;
     for (size_t i = 0; i < count; i++) {
         flat &= (scene->nodes[children[i]].flags & CSG_FLAG_FLAT) != 0;
         soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
+        bool has_plateau = (scene->nodes[children[i]].flags & CSG_FLAG_PLATEAU) != 0;
+        plateau |= has_plateau;
+        some_end |= !has_plateau;
     }
     for (size_t i = 0; i < count; i++)
         if (scene->nodes[children[i]].warps > node.warps)
@@ -151,6 +155,11 @@ csg_node_id csg_build_append(csg_scene_builder *builder, csg_node node, const cs
         node.flags |= CSG_FLAG_FLAT;
     if (makes_soft(&node, soft))
         node.flags |= CSG_FLAG_SOFT;
+    bool is_sharp = csg_blend_is_sharp(node.blend);
+    bool is_ended = csg_node_is_operator(node.kind) && /* blends have ended their operands' */
+                    (!is_sharp || (node.kind == CSG_NODE_INTERSECTION && some_end));
+    if ((node.flags & CSG_FLAG_SOFT) || (plateau && !is_ended))
+        node.flags |= CSG_FLAG_PLATEAU;
     for (size_t i = 0; i < count; i++)
         scene->children[scene->child_count++] = children[i];
     scene->nodes[scene->node_count] = node;
