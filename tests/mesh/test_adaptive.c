@@ -377,6 +377,62 @@ static void test_random_scenes(void **state)
     }
 }
 
+/* ---- in tiles ----------------------------------------------------------------------------------
+ */
+
+/* The first of these limits of memory that is enough for a scene: it is the narrower for tiles. */
+static uint64_t build_in_little(mesh_case *c, unsigned seed, const csgm_mesh_options *options)
+{
+    csg_memory *memory = &c->context.memory;
+    uint64_t used = atomic_load(&memory->used_bytes);
+    for (uint64_t more = 1 << 20; more <= 64 << 20; more += more / 4) {
+        memory->limit_bytes = used + more;
+        csgm_status status = mesh_build(c, options);
+        if (status == CSGM_OK)
+            return memory->limit_bytes;
+        assert_int_equal(status, CSGM_ERR_MEMORY);
+    }
+    fail_msg("scene %u takes more than 64 MB", seed);
+    return 0;
+}
+
+/* Where the memory does not allow the whole mesh before it is thinned out, it is thinned out in
+ * tiles: another mesh, closed and within the tolerance like the first. */
+static void test_tiles(void **state)
+{
+    unsigned tiled = 0;
+    if (scene_count < 12) /* the slow test: each scene is made many times */
+        skip();
+    for (unsigned seed = first_seed; seed < first_seed + scene_count; seed++) {
+        mesh_case whole, one, other;
+        char what[64];
+        snprintf(what, sizeof what, "tiles of random scene %u", seed);
+        compile_scene(&whole, seed, 2);
+        csgm_mesh_options options = options_of(&whole, seed);
+        options.quality = CSGM_QUALITY_NORMAL;
+        options.tolerance = seed % 4 == 3 ? 0.01 : 0;
+        mesh_build_closed(&whole, &options, what);
+        compile_scene(&other, seed, 3);
+        uint64_t limit = build_in_little(&other, seed, &options);
+        compile_scene(&one, seed, 1);
+        one.context.memory.limit_bytes = limit;
+        one.context.isa = csg_cpu_best_isa(CSGM_ISA_SCALAR);
+        options.prune = false;
+        mesh_build_closed(&one, &options, what);
+        assert_uncrossed(one.mesh, what);
+        mesh_assert_same(one.mesh, other.mesh, what);
+        assert_int_equal(one.stats.triangles_before, whole.stats.triangles_before);
+        assert_int_equal(one.stats.feature_vertices, whole.stats.feature_vertices);
+        if (whole.stats.max_distance_measured <= whole.stats.distance_allowed)
+            assert_true(one.stats.max_distance_measured <= one.stats.distance_allowed);
+        tiled += one.mesh->triangle_count != whole.mesh->triangle_count;
+        mesh_case_end(&whole);
+        mesh_case_end(&one);
+        mesh_case_end(&other);
+    }
+    assert_true(tiled > 0);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -387,7 +443,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_slits),           cmocka_unit_test(test_contacts),
         cmocka_unit_test(test_triangle_count),  cmocka_unit_test(test_random_scenes),
         cmocka_unit_test(test_bulges),          cmocka_unit_test(test_tight_roundings),
-        cmocka_unit_test(test_without_size),
+        cmocka_unit_test(test_without_size),    cmocka_unit_test(test_tiles),
     };
     if (argc > 1)
         scene_count = (unsigned)strtoul(argv[1], NULL, 10);

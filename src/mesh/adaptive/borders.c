@@ -82,7 +82,7 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
  */
 
 /* Marks of bricks. */
-enum { CHANGED = 1, AROUND = 2 };
+enum { CHANGED = 1, CHOSEN = 4 }; /* beside CSG_MARK_AROUND */
 
 /* Marks what a new brick, in the place of a cell, changes the border of: itself, and the bricks
  * around that cell. */
@@ -101,11 +101,6 @@ static void mark_changed(const csg_bricks *b, size_t number, uint8_t *changed)
     }
 }
 
-static bool has_leaves(const csg_brick *brick)
-{
-    return brick->divided != CSG_BRICK_ALL_CELLS;
-}
-
 /* A byte per brick: CHANGED where new bricks, from `first` on, changed its border. NULL: out of
  * memory. */
 static uint8_t *find_changed(const csg_extraction *x, size_t first)
@@ -120,40 +115,6 @@ static uint8_t *find_changed(const csg_extraction *x, size_t first)
     return changed;
 }
 
-/* Marks the bricks that the leaves of one share edges and faces with: those around it, and those in
- * the place of cells of all of these. */
-static void mark_around(const csg_bricks *b, uint32_t number, uint8_t *marks)
-{
-    uint32_t around[CSG_BRICKS_AROUND];
-    csg_bricks_around(b, number, around);
-    for (int i = 0; i < CSG_BRICKS_AROUND; i++) {
-        if (around[i] == CSG_BRICK_NONE)
-            continue;
-        const csg_brick *brick = &b->items[around[i]];
-        marks[around[i]] |= AROUND;
-        for (unsigned rest = brick->divided; rest; rest &= rest - 1) {
-            unsigned octant = (unsigned)__builtin_ctz(rest);
-            uint32_t below[3];
-            for (int axis = 0; axis < 3; axis++)
-                below[axis] = 2 * brick->at[axis] + (octant >> axis & 1);
-            uint32_t finer = csg_bricks_find(b, brick->level + 1u, below);
-            if (finer != CSG_BRICK_NONE)
-                marks[finer] |= AROUND;
-        }
-    }
-}
-
-/* Lists the bricks that have leaves and this mark. */
-static csgm_status list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t mark)
-{
-    const csg_bricks *b = w->x->bricks;
-    csg_cell_loop_clear(w);
-    for (size_t i = 0; i < b->count; i++)
-        if (marks[i] & mark && has_leaves(&b->items[i]) && !csg_cell_loop_list(w, (uint32_t)i))
-            return csg_context_no_memory(w->x->context);
-    return CSGM_OK;
-}
-
 /* ---- all of it ---------------------------------------------------------------------------------
  */
 
@@ -163,7 +124,8 @@ csgm_status csg_borders_check_simple(csg_extraction *x, bool *any)
     csgm_status status = csg_cell_loop_begin(&w, x);
     uint8_t *changed = status == CSGM_OK ? find_changed(x, x->simple) : NULL;
     if (status == CSGM_OK)
-        status = changed ? list_marked(&w, changed, CHANGED) : csg_context_no_memory(x->context);
+        status = changed ? csg_cell_loop_list_marked(&w, changed, CHANGED)
+                         : csg_context_no_memory(x->context);
     csg_memory_release(&x->context->memory, changed, changed ? x->bricks->count : 0);
     x->simple = x->bricks->count;
     if (status == CSGM_OK)
@@ -173,31 +135,57 @@ csgm_status csg_borders_check_simple(csg_extraction *x, bool *any)
     return status;
 }
 
-csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
+/* Bricks whose borders are looked at together: each takes a kilobyte with what is around it. */
+enum { NEAR_TOGETHER = 1 << 15 };
+
+/* Marks the changed bricks from *first on that are looked at together, and what is around them;
+ * *first is then behind them. */
+static void choose_together(const csg_bricks *b, uint8_t *marks, size_t *first)
 {
-    CSG_ZONE(x->context, "borders");
+    size_t count = 0, i;
+    for (i = 0; i < b->count; i++)
+        marks[i] &= CHANGED;
+    for (i = *first; i < b->count && count < NEAR_TOGETHER; i++)
+        if (marks[i] & CHANGED && csg_cell_loop_has_leaves(&b->items[i])) {
+            csg_cell_loop_mark_around(b, (uint32_t)i, marks);
+            marks[i] |= CHOSEN;
+            count++;
+        }
+    *first = i;
+}
+
+static csgm_status check_together(csg_extraction *x, const uint8_t *marks, bool *any)
+{
     csg_cell_loop w;
-    csg_bricks *b = x->bricks;
+    const double reported = x->bricks->reported;
     csgm_status status = csg_cell_loop_begin(&w, x);
-    uint8_t *marks = status == CSGM_OK ? find_changed(x, x->near) : NULL;
-    if (status == CSGM_OK && !marks)
-        status = csg_context_no_memory(x->context);
-    for (size_t i = 0; status == CSGM_OK && i < b->count; i++)
-        if (marks[i] & CHANGED && has_leaves(&b->items[i]))
-            mark_around(b, (uint32_t)i, marks);
     if (status == CSGM_OK)
-        status = list_marked(&w, marks, AROUND);
+        status = csg_cell_loop_list_marked(&w, marks, CSG_MARK_AROUND);
     if (status == CSGM_OK)
         csg_cell_loop_keep_shells(&w);
     if (status == CSGM_OK)
-        status = csg_cells_find_vertices(&w, b->reported, 0);
+        status = csg_cells_find_vertices(&w, reported, 0);
     if (status == CSGM_OK)
-        status = list_marked(&w, marks, CHANGED);
+        status = csg_cell_loop_list_marked(&w, marks, CHOSEN);
     if (status == CSGM_OK)
-        status = csg_cell_loop_run(&w, visit_near, b->reported, 0);
-    x->near = b->count;
-    *any = atomic_load(&w.any);
-    csg_memory_release(&x->context->memory, marks, marks ? b->count : 0);
+        status = csg_cell_loop_run(&w, visit_near, reported, 0);
+    *any |= atomic_load(&w.any);
     csg_cell_loop_end(&w);
+    return status;
+}
+
+csgm_status csg_borders_check_near(csg_extraction *x, bool *any)
+{
+    CSG_ZONE(x->context, "borders");
+    csg_bricks *b = x->bricks;
+    *any = false;
+    uint8_t *marks = find_changed(x, x->near);
+    csgm_status status = marks ? CSGM_OK : csg_context_no_memory(x->context);
+    for (size_t first = 0; status == CSGM_OK && first < b->count;) {
+        choose_together(b, marks, &first);
+        status = check_together(x, marks, any);
+    }
+    x->near = b->count;
+    csg_memory_release(&x->context->memory, marks, marks ? b->count : 0);
     return status;
 }

@@ -312,6 +312,38 @@ bool csg_cell_loop_list(csg_cell_loop *w, uint32_t brick)
     return true;
 }
 
+void csg_cell_loop_mark_around(const csg_bricks *b, uint32_t number, uint8_t *marks)
+{
+    uint32_t around[CSG_BRICKS_AROUND];
+    csg_bricks_around(b, number, around);
+    for (int i = 0; i < CSG_BRICKS_AROUND; i++) {
+        if (around[i] == CSG_BRICK_NONE)
+            continue;
+        const csg_brick *brick = &b->items[around[i]];
+        marks[around[i]] |= CSG_MARK_AROUND;
+        for (unsigned rest = brick->divided; rest; rest &= rest - 1) {
+            unsigned octant = (unsigned)__builtin_ctz(rest);
+            uint32_t below[3];
+            for (int axis = 0; axis < 3; axis++)
+                below[axis] = 2 * brick->at[axis] + (octant >> axis & 1);
+            uint32_t finer = csg_bricks_find(b, brick->level + 1u, below);
+            if (finer != CSG_BRICK_NONE)
+                marks[finer] |= CSG_MARK_AROUND;
+        }
+    }
+}
+
+csgm_status csg_cell_loop_list_marked(csg_cell_loop *w, const uint8_t *marks, uint8_t mark)
+{
+    const csg_bricks *b = w->x->bricks;
+    csg_cell_loop_clear(w);
+    for (size_t i = 0; i < b->count; i++)
+        if (marks[i] & mark && csg_cell_loop_has_leaves(&b->items[i]) &&
+            !csg_cell_loop_list(w, (uint32_t)i))
+            return csg_context_no_memory(w->x->context);
+    return CSGM_OK;
+}
+
 static void release_shells(csg_cell_loop *w)
 {
     csg_memory_release(&w->x->context->memory, w->shells, w->shell_count * sizeof *w->shells);

@@ -65,6 +65,18 @@ csgm_status csg_cell_loop_begin(csg_cell_loop *loop, csg_extraction *x);
 void csg_cell_loop_end(csg_cell_loop *loop);
 /* False: out of memory. */
 bool csg_cell_loop_list(csg_cell_loop *loop, uint32_t brick);
+/* Marks of bricks, a byte each: */
+enum { CSG_MARK_AROUND = 2 };
+/* Marks the bricks that the leaves of one share edges and faces with: those around it, and those in
+ * the place of cells of all of these. */
+void csg_cell_loop_mark_around(const csg_bricks *bricks, uint32_t number, uint8_t *marks);
+/* Lists the bricks that have leaves and this mark, and no others. CSGM_OK or CSGM_ERR_MEMORY
+ * (reported). */
+csgm_status csg_cell_loop_list_marked(csg_cell_loop *loop, const uint8_t *marks, uint8_t mark);
+static inline bool csg_cell_loop_has_leaves(const csg_brick *brick)
+{
+    return brick->divided != CSG_BRICK_ALL_CELLS;
+}
 /* Without the bricks that are listed. */
 void csg_cell_loop_clear(csg_cell_loop *loop);
 /* Has the shells of the bricks that are listed made once for all loops over them, if there is

@@ -176,3 +176,121 @@ csgm_status csg_extract(csg_extraction *x)
     csg_cell_loop_end(&w);
     return status;
 }
+
+/* ---- a part of it ------------------------------------------------------------------------------
+ */
+
+/* The leaves whose edges and faces those of the part may have. */
+static csgm_status list_around(csg_cell_loop *w, const uint32_t *leaves, size_t count)
+{
+    csg_memory *memory = &w->x->context->memory;
+    const csg_bricks *b = w->x->bricks;
+    uint8_t *marks = csg_memory_alloc(memory, b->count);
+    if (!marks)
+        return csg_context_no_memory(w->x->context);
+    memset(marks, 0, b->count);
+    for (size_t i = 0; i < count; i++)
+        csg_cell_loop_mark_around(b, leaves[i], marks);
+    csgm_status status = csg_cell_loop_list_marked(w, marks, CSG_MARK_AROUND);
+    csg_memory_release(memory, marks, b->count);
+    return status;
+}
+
+static csgm_status list_part(csg_cell_loop *w, const uint32_t *leaves, size_t count)
+{
+    csg_cell_loop_clear(w);
+    for (size_t i = 0; i < count; i++)
+        if (!csg_cell_loop_list(w, leaves[i]))
+            return csg_context_no_memory(w->x->context);
+    return CSGM_OK;
+}
+
+/* Numbers the vertices that triangles have; others are of leaves around. */
+static uint64_t number_vertices(const csg_cell_loop *w, uint32_t *number)
+{
+    uint64_t used = 0;
+    memset(number, 0xFF, (w->count + 1) * sizeof *number);
+    for (size_t i = 0; i < w->corner_count; i++)
+        number[w->corners[i]] = 0;
+    for (size_t i = 0; i < w->count; i++)
+        if (number[i] == 0)
+            number[i] = (uint32_t)used++;
+    return used;
+}
+
+static csgm_status fill_part(const csg_cell_loop *w, const uint32_t *number, uint64_t count,
+                             csg_extracted_part *part)
+{
+    csg_extraction *x = w->x;
+    csg_memory *memory = &x->context->memory;
+    csgm_status status =
+        csg_mesh_create(x->context, count, w->corner_count / 3, false, x->colors, &part->mesh);
+    if (status != CSGM_OK)
+        return status;
+    part->places = csg_memory_alloc(memory, (size_t)(count + 1) * sizeof *part->places);
+    part->creases = csg_memory_alloc(memory, (size_t)count + 1);
+    if (!part->places || !part->creases)
+        return csg_context_no_memory(x->context);
+    for (size_t i = 0; i < w->count; i++) {
+        const csg_placed_vertex *v = &w->vertices[i];
+        if (number[i] == UINT32_MAX)
+            continue;
+        csg_vec3 at = csg_vec3_add(csg_vec3_from_floats(v->at), x->shift);
+        csg_vec3_to_floats(part->mesh->positions + 3 * (size_t)number[i], at);
+        part->places[number[i]] = v->place;
+        part->creases[number[i]] = v->is_crease;
+    }
+    for (size_t i = 0; i < w->corner_count; i++)
+        part->mesh->indices[i] = number[w->corners[i]];
+    return CSGM_OK;
+}
+
+static csgm_status write_part(const csg_cell_loop *w, csg_extracted_part *part)
+{
+    csg_memory *memory = &w->x->context->memory;
+    size_t bytes = (w->count + 1) * sizeof(uint32_t);
+    uint32_t *number = csg_memory_alloc(memory, bytes);
+    if (!number)
+        return csg_context_no_memory(w->x->context);
+    uint64_t count = number_vertices(w, number);
+    csgm_status status = fill_part(w, number, count, part);
+    csg_memory_release(memory, number, bytes);
+    return status;
+}
+
+csgm_status csg_extract_part(csg_extraction *x, const uint32_t *leaves, size_t count,
+                             csg_extracted_part *part)
+{
+    csg_cell_loop w;
+    *part = (csg_extracted_part){0};
+    csgm_status status = csg_cell_loop_begin(&w, x);
+    if (status == CSGM_OK)
+        status = list_around(&w, leaves, count);
+    if (status == CSGM_OK)
+        csg_cell_loop_keep_shells(&w);
+    if (status == CSGM_OK)
+        status = csg_cells_find_vertices(&w, 0, 0.5);
+    if (status == CSGM_OK)
+        status = list_part(&w, leaves, count);
+    if (status == CSGM_OK)
+        status = csg_cell_loop_run(&w, visit_cells, 0.5, 0.5);
+    x->smooth += w.smooth;
+    if (status == CSGM_OK)
+        status = write_part(&w, part);
+    csg_cell_loop_end(&w);
+    if (status != CSGM_OK)
+        csg_extracted_part_release(part);
+    return status;
+}
+
+void csg_extracted_part_release(csg_extracted_part *part)
+{
+    if (part->mesh) {
+        csg_memory *memory = &part->mesh->context->memory;
+        size_t count = (size_t)part->mesh->vertex_count + 1;
+        csg_memory_release(memory, part->places, count * sizeof *part->places);
+        csg_memory_release(memory, part->creases, count);
+    }
+    csg_mesh_destroy(part->mesh);
+    *part = (csg_extracted_part){0};
+}

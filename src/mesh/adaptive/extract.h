@@ -15,4 +15,18 @@
  * (reported); CSGM_ERR_LIMIT above 2^31 vertices. */
 csgm_status csg_extract(csg_extraction *extraction);
 
+/* A part of it. */
+typedef struct csg_extracted_part {
+    csgm_mesh *mesh;  /* open where others go on; its origin is still to be set */
+    uint64_t *places; /* per vertex: of the edge or face of cells that it is on, which others may
+                         have too; 0: it is in a cell */
+    uint8_t *creases; /* per vertex: whether it is on a crease, corner or tip */
+} csg_extracted_part;
+
+/* That of these leaves alone; x->mesh stays as it is, and x->creases are not counted. CSGM_OK or as
+ * csg_extract. */
+csgm_status csg_extract_part(csg_extraction *extraction, const uint32_t *leaves, size_t count,
+                             csg_extracted_part *part);
+void csg_extracted_part_release(csg_extracted_part *part);
+
 #endif

@@ -12,7 +12,7 @@
 #include "base/trace.h"
 #include "mesh/remesh/triangle.h"
 
-typedef struct place {
+typedef struct csg_unsure_place {
     csg_vec3 at;
     bool is_near; /* the mesh */
 } place;
@@ -82,19 +82,6 @@ static void mark_near_triangle(place *places, size_t count, const csg_vec3 v[3],
             places[i].is_near = true;
 }
 
-static void mark_near_mesh(const csg_extraction *x, place *places, size_t count)
-{
-    const csgm_mesh *mesh = x->mesh;
-    for (uint64_t t = 0; t < mesh->triangle_count; t++) {
-        csg_vec3 v[3];
-        for (int k = 0; k < 3; k++) {
-            const float *p = mesh->positions + 3 * (size_t)mesh->indices[3 * t + (uint64_t)k];
-            v[k] = csg_vec3_sub(csg_vec3_from_floats(p), x->shift);
-        }
-        mark_near_triangle(places, count, v, x->farthest);
-    }
-}
-
 /* False: there are no smaller cells. */
 static bool want_divided(csg_bricks *b, csg_vec3 at)
 {
@@ -113,24 +100,54 @@ static bool want_divided(csg_bricks *b, csg_vec3 at)
     return true;
 }
 
+csgm_status csg_unsure_begin(csg_extraction *x, csg_unsure *unsure)
+{
+    csg_memory *memory = &x->context->memory;
+    csg_records gathered = {0};
+    *unsure = (csg_unsure){0};
+    csgm_status status = gather(x, &gathered);
+    size_t count = gathered.count / sizeof(csg_vec3);
+    if (status == CSGM_OK && count) {
+        unsure->places = sort(memory, &gathered, count);
+        unsure->count = unsure->places ? count : 0;
+        status = unsure->places ? CSGM_OK : csg_context_no_memory(x->context);
+    }
+    csg_memory_release(memory, gathered.bytes, gathered.capacity);
+    return status;
+}
+
+void csg_unsure_look(const csg_extraction *x, csg_unsure *unsure, const csgm_mesh *mesh)
+{
+    for (uint64_t t = 0; t < mesh->triangle_count && unsure->count; t++) {
+        csg_vec3 v[3];
+        for (int k = 0; k < 3; k++) {
+            const float *p = mesh->positions + 3 * (size_t)mesh->indices[3 * t + (uint64_t)k];
+            v[k] = csg_vec3_sub(csg_vec3_from_floats(p), x->shift);
+        }
+        mark_near_triangle(unsure->places, unsure->count, v, x->farthest);
+    }
+}
+
+bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure)
+{
+    bool any = false;
+    for (size_t i = 0; i < unsure->count; i++)
+        if (!unsure->places[i].is_near && want_divided(x->bricks, unsure->places[i].at))
+            any = true;
+    csg_memory_release(&x->context->memory, unsure->places, unsure->count * sizeof *unsure->places);
+    *unsure = (csg_unsure){0};
+    return any;
+}
+
 csgm_status csg_unsure_check(csg_extraction *x, bool *any)
 {
     CSG_ZONE(x->context, "unsure places");
-    csg_memory *memory = &x->context->memory;
-    csg_records gathered = {0};
+    csg_unsure unsure;
+    csgm_status status = csg_unsure_begin(x, &unsure);
     *any = false;
-    csgm_status status = gather(x, &gathered);
-    size_t count = gathered.count / sizeof(csg_vec3);
-    place *places = status == CSGM_OK && count ? sort(memory, &gathered, count) : NULL;
-    csg_memory_release(memory, gathered.bytes, gathered.capacity);
-    if (status != CSGM_OK || !count)
-        return status;
-    if (!places)
-        return csg_context_no_memory(x->context);
-    mark_near_mesh(x, places, count);
-    for (size_t i = 0; i < count; i++)
-        if (!places[i].is_near && want_divided(x->bricks, places[i].at))
-            *any = true;
-    csg_memory_release(memory, places, count * sizeof *places);
-    return CSGM_OK;
+    if (status == CSGM_OK) {
+        csg_unsure_look(x, &unsure, x->mesh);
+        *any = csg_unsure_end(x, &unsure);
+    }
+    return status;
 }

@@ -8,9 +8,22 @@
 
 #include "mesh/adaptive/extraction.h"
 
-/* Wants the leaves divided that hold such places away from x->mesh, and forgets all of them. *any:
- * there are some that can be divided; the mesh is to be made again after refinement. CSGM_OK or
- * CSGM_ERR_MEMORY (reported). */
+/* Places that are held against the mesh. */
+typedef struct csg_unsure {
+    struct csg_unsure_place *places; /* sorted along x */
+    size_t count;
+} csg_unsure;
+
+/* Takes them over from the judge, who forgets them. CSGM_OK or why it ends (reported): then there
+ * is nothing to end. */
+csgm_status csg_unsure_begin(csg_extraction *x, csg_unsure *unsure);
+/* Holds them against a mesh, or one part of it after the other. */
+void csg_unsure_look(const csg_extraction *x, csg_unsure *unsure, const csgm_mesh *mesh);
+/* Wants the leaves divided that hold places away from all of it. True: there are some that can be
+ * divided; the mesh is to be made again after refinement. */
+bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure);
+
+/* All three, with x->mesh. CSGM_OK or as csg_unsure_begin. */
 csgm_status csg_unsure_check(csg_extraction *x, bool *any);
 
 #endif

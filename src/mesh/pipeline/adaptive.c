@@ -15,7 +15,9 @@
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
 #include "mesh/adaptive/unsure.h"
+#include "mesh/pipeline/adaptive_tiles.h"
 #include "mesh/pipeline/certify.h"
+#include "mesh/pipeline/paint.h"
 #include "mesh/pipeline/survey.h"
 #include "mesh/pipeline/workers.h"
 
@@ -40,6 +42,7 @@ typedef struct adaptive {
     csg_extraction extraction;
     csg_mesh_goal *goal;
     uint64_t own_triangles; /* that it began with */
+    csg_joined joined;      /* what the goal has of tiles */
     double refined_s;
     bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
@@ -156,35 +159,6 @@ static csgm_status refine(adaptive *a)
     }
     a->is_too_fine = status == CSGM_ERR_LIMIT && a->bricks.count > MOST_BRICKS;
     return status;
-}
-
-/* ---- looks ------------------------------------------------------------------------------------- */
-
-static csgm_status paint(adaptive *a)
-{
-    csgm_mesh *mesh = a->extraction.mesh;
-    csgm_status status =
-        csg_mesh_gets_materials(&a->input) ? csg_mesh_add_materials(mesh) : CSGM_OK;
-    if (status != CSGM_OK || (!mesh->colors && !mesh->materials))
-        return status;
-    csg_probe probe;
-    if (!csg_probe_make(&probe, &a->workers.marching, &a->input.context->memory))
-        return csg_context_no_memory(a->input.context);
-    float at[CSG_PROBE_MOST][3];
-    csg_vec3 shift = a->workers.marching.shift;
-    for (uint64_t first = 0; first < mesh->vertex_count; first += CSG_PROBE_MOST) {
-        size_t count = (size_t)(mesh->vertex_count - first);
-        count = count < CSG_PROBE_MOST ? count : CSG_PROBE_MOST;
-        for (size_t i = 0; i < count; i++)
-            csg_vec3_to_floats(
-                at[i],
-                csg_vec3_sub(csg_vec3_from_floats(mesh->positions + 3 * (first + i)), shift));
-        csg_probe_looks(&probe, (const float(*)[3])at, count,
-                        mesh->colors ? (uint8_t(*)[4])(mesh->colors + 4 * first) : NULL,
-                        mesh->materials ? (uint16_t(*)[2])(mesh->materials + 2 * first) : NULL);
-    }
-    csg_probe_release(&probe);
-    return CSGM_OK;
 }
 
 /* ---- bounds ------------------------------------------------------------------------------------ */
@@ -307,6 +281,8 @@ static void end_room(csg_judge_room *room, csg_memory *memory)
 
 static void release(adaptive *a)
 {
+    a->goal->joined = NULL;
+    csg_joined_end(&a->joined);
     csg_bricks_destroy(&a->bricks);
     for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++)
         end_room(&a->judge.rooms[i], &a->input.context->memory);
@@ -328,32 +304,45 @@ static void warn_of_result(const adaptive *a)
                             !is_empty && a->input.clipped && touches_bounds(a));
 }
 
-/* Until every place of the surface that was found is near the mesh: hardly ever twice. */
-static csgm_status extract(adaptive *a)
+/* The mesh as a whole. *any: as csg_unsure_check. */
+static csgm_status extract_whole(csg_extraction *x, bool *any)
 {
-    csg_extraction *x = &a->extraction;
     csgm_status status = csg_extract(x);
-    for (bool any = true; status == CSGM_OK;) {
-        status = csg_unsure_check(x, &any);
-        if (status != CSGM_OK || !any)
-            break;
-        csg_mesh_destroy(x->mesh);
-        x->mesh = NULL;
-        x->creases = x->smooth = 0;
-        status = refine(a);
-        if (status == CSGM_OK)
-            status = csg_extract(x);
-    }
+    if (status == CSGM_OK)
+        status = csg_unsure_check(x, any);
     return status;
 }
 
-static csgm_status extract_and_paint(adaptive *a)
+static csgm_status paint_whole(adaptive *a)
 {
-    csgm_status status = extract(a);
-    if (status != CSGM_OK)
-        return status;
-    a->extraction.mesh->origin = csg_mesh_origin_of(&a->input);
-    return paint(a);
+    csgm_mesh *mesh = a->extraction.mesh;
+    mesh->origin = csg_mesh_origin_of(&a->input);
+    return csg_mesh_paint(&a->input, &a->workers.marching, mesh);
+}
+
+/* Until every place of the surface that was found is near the mesh: hardly ever twice. Where the
+ * memory is narrow, the mesh is made and thinned out in tiles. */
+static csgm_status extract(adaptive *a)
+{
+    csg_extraction *x = &a->extraction;
+    const csg_memory *memory = &a->input.context->memory;
+    for (;;) {
+        bool any = false;
+        size_t tile = csg_mesh_tile_bricks(&a->bricks, a->goal, memory->limit_bytes);
+        a->goal->joined = tile ? &a->joined : NULL;
+        csgm_status status =
+            tile ? csg_mesh_make_tiles(&a->input, &a->workers.marching, a->goal, x, tile, &any)
+                 : extract_whole(x, &any);
+        if (status == CSGM_OK && !any)
+            return tile ? CSGM_OK : paint_whole(a);
+        csg_mesh_destroy(x->mesh);
+        x->mesh = NULL;
+        x->creases = x->smooth = 0;
+        if (status == CSGM_OK)
+            status = refine(a);
+        if (status != CSGM_OK)
+            return status;
+    }
 }
 
 static csgm_status make_mesh(adaptive *a)
@@ -362,7 +351,7 @@ static csgm_status make_mesh(adaptive *a)
     csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK && !a->goal->is_own)
-        status = extract_and_paint(a);
+        status = extract(a);
     if (status == CSGM_OK && (*mesh)->triangle_count)
         status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);
     if (status != CSGM_OK || a->goal->is_own || a->goal->cell_size > 0)
@@ -395,6 +384,8 @@ static csgm_status build_within(csgm_context *context, const csgm_field *field,
     adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
                   .goal = goal};
     take_own(&a);
+    csg_joined_begin(&a.joined, context, csg_mesh_gets_colors(&a.input),
+                     csg_mesh_gets_materials(&a.input));
     csg_mesh_input_watch(&a.input, goal->started_s, &a.watch);
     csgm_status status = csg_mesh_input_complete(&a.input);
     a.refined_s = csg_clock_now_s();

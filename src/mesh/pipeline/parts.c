@@ -177,18 +177,20 @@ static csgm_status build_parts(csgm_context *context, const csgm_field *field,
 
 /* What ranks must have in common to reshape one mesh, of a field without parts or a part. */
 typedef struct common {
-    uint64_t tape, triangles;
+    uint64_t tape, triangles, limit_bytes; /* whether it is thinned out in tiles */
     double size[4], lipschitz;
     csg_box bounds[2];
     uint32_t ways[7];
 } common;
 
-static common common_of(const csgm_field *field, const csgm_mesh_options *o)
+static common common_of(const csgm_context *context, const csgm_field *field,
+                        const csgm_mesh_options *o)
 {
     common own;
     memset(&own, 0, sizeof own); /* between its members, too */
     own.tape = field->tape.count;
     own.triangles = o->triangles;
+    own.limit_bytes = context->memory.limit_bytes;
     own.lipschitz = (double)field->tape.lipschitz;
     own.bounds[0] = field->bounds;
     own.bounds[1] = o->bounds;
@@ -208,7 +210,7 @@ static csgm_status compare_ranks(csgm_context *context, const csgm_field *field,
     size_t count = field->part_count ? field->part_count : 1;
     common *each = csg_memory_alloc(&context->memory, count * sizeof *each);
     for (size_t i = 0; each && i < count; i++)
-        each[i] = common_of(field->part_count ? field->parts[i].field : field, options);
+        each[i] = common_of(context, field->part_count ? field->parts[i].field : field, options);
     csgm_status status = csg_ranks_agree(context, each ? CSGM_OK : csg_context_no_memory(context));
     if (status == CSGM_OK)
         status = csg_mesh_ranks_compare(context, each, count * sizeof *each);

@@ -132,6 +132,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         if (status != CSGM_OK || !(goal.cell_size > 0))
             break;
         csg_mesh_destroy(*out);
+        *out = NULL; /* the next try may fail */
         was_open = goal.open > 0;
         if (was_open)
             goal.care *= 0.8;

@@ -101,7 +101,7 @@ static void find_turns(const csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
     memset(creased, 0, 3 * (size_t)m->triangle_count);
     for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
         uint32_t other = m->across[c];
-        if (!csg_corners_is_live(m, c / 3) ||
+        if (!csg_corners_is_live(m, c / 3) || c / 3 < r->closing || other / 3 < r->closing ||
             !(csg_vec3_dot(normals[c / 3], normals[other / 3]) < CSG_CREASE_COS))
             continue;
         creased[c] = 1;
@@ -353,7 +353,7 @@ static bool take_arrays(csg_remesh *r)
     return r->at && r->kind && (!looks || r->looks);
 }
 
-csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, bool is_own,
+csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_remesh_origin *origin,
                              const csg_marching *marching, csg_mesh_watch *watch)
 {
     csgm_context *context = watch->context;
@@ -362,7 +362,8 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, bool is_own,
                       .watch = watch,
                       .marching = marching,
                       .mesh = mesh,
-                      .is_own = is_own,
+                      .is_own = origin->is_own,
+                      .closing = origin->closing,
                       .cell = marching->lattice->cell_size};
     csg_corners_result result = csg_corners_make(&r->corners, r->memory, mesh->indices,
                                                  mesh->triangle_count, mesh->vertex_count);
@@ -373,8 +374,11 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, bool is_own,
                 csg_mesh_stop_without_memory(watch);
     if (done) {
         copy_vertices(r);
-        done = with_room(r, find_kinds) && (csg_triangle_tree_make(&r->tree, &r->corners, r->at) ||
-                                            csg_mesh_stop_without_memory(watch));
+        if (origin->kinds)
+            memcpy(r->kind, origin->kinds, r->corners.vertex_count);
+        done = (origin->kinds || with_room(r, find_kinds)) &&
+               (csg_triangle_tree_make(&r->tree, &r->corners, r->at) ||
+                csg_mesh_stop_without_memory(watch));
     }
     if (done)
         return CSGM_OK;

@@ -39,15 +39,24 @@ typedef struct csg_remesh {
     uint8_t *kind;             /* per vertex: csg_vertex_kind */
     csg_look_at_vertex *looks; /* per vertex; NULL: the mesh has neither colours nor materials */
     bool is_own;               /* it began with triangles of polyhedra */
+    uint32_t closing;          /* of its triangles, the first: csg_remesh_origin */
     double cell;               /* edge of a cell */
     double error;              /* that changes may make: distance both ways */
 } csg_remesh;
 
+/* Where a mesh comes from. */
+typedef struct csg_remesh_origin {
+    bool is_own;      /* triangles are polyhedra's, slivers among them true */
+    uint32_t closing; /* the first triangles only close a part of a mesh (close.h): they are none of
+                         the surface's, and whoever changes the mesh keeps away from them */
+    const uint8_t *kinds; /* per vertex, as they were found before; NULL: they are to be found */
+} csg_remesh_origin;
+
 /* Of a mesh, whose creases are found by angle: where triangles that lie on the surface meet at 20
  * degrees or more, and, where cells follow the shape, the field turns there and not beside it.
- * is_own: triangles are polyhedra's, slivers among them true. marching: as it was made, with its
- * blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL: not a closed manifold. */
-csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, bool is_own,
+ * marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL:
+ * not a closed manifold. */
+csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, const csg_remesh_origin *origin,
                              const csg_marching *marching, csg_mesh_watch *watch);
 void csg_remesh_end(csg_remesh *remesh);
 /* The mesh as it is now as new arrays in place of remesh->mesh, which is destroyed; gaps in the

@@ -119,7 +119,6 @@ static bool fill(csg_triangle_tree *t)
 
 bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, const csg_vec3 *at)
 {
-    static const double ROUNDING = 1e-7; /* of the whole */
     *t = (csg_triangle_tree){.corners = corners, .at = at, .count = corners->triangle_count};
     if (!fill(t)) {
         csg_triangle_tree_release(t);
@@ -127,7 +126,8 @@ bool csg_triangle_tree_make(csg_triangle_tree *t, const csg_corners *corners, co
     }
     const csg_triangle_box *all = &t->nodes[1];
     for (int k = 0; k < 3 && all->max[k] >= all->min[k]; k++)
-        t->noise = fmax(t->noise, ROUNDING * ((double)all->max[k] - (double)all->min[k]));
+        t->noise =
+            fmax(t->noise, csg_triangle_tree_noise((double)all->max[k] - (double)all->min[k]));
     return true;
 }
 

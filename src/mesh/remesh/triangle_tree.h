@@ -32,6 +32,13 @@ typedef struct csg_triangle_tree {
     double noise;          /* of places, rounded to floats as vertices are */
 } csg_triangle_tree;
 
+/* That of a mesh with this longest side. */
+static inline double csg_triangle_tree_noise(double extent)
+{
+    static const double ROUNDING = 1e-7;
+    return ROUNDING * extent;
+}
+
 /* False: out of memory, nothing to release. */
 bool csg_triangle_tree_make(csg_triangle_tree *tree, const csg_corners *corners,
                             const csg_vec3 *at);

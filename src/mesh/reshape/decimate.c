@@ -123,7 +123,7 @@ static void find_normals(const csg_remesh *r, csg_vec3 *out)
 {
     const csg_corners *m = &r->corners;
     memset(out, 0, m->vertex_count * sizeof *out);
-    for (uint32_t t = 0; t < m->triangle_count; t++) {
+    for (uint32_t t = r->closing; t < m->triangle_count; t++) {
         if (!csg_corners_is_live(m, t))
             continue;
         csg_vec3 normal = triangle_normal(r, t);
@@ -220,7 +220,10 @@ static bool look_at_mesh(csg_decimation *d)
     if (!normals)
         return false;
     find_normals(r, normals);
-    csg_decimation_make_samples(d, normals);
+    if (d->begun)
+        csg_decimation_take_samples(d);
+    else
+        csg_decimation_make_samples(d, normals);
     find_tangents(r, normals);
     make_quadrics(d, normals);
     csg_memory_release(r->memory, normals, count * sizeof *normals);
@@ -236,6 +239,10 @@ static bool keep_looks(csg_decimation *d)
     size_t bytes = r->corners.vertex_count * sizeof *r->looks;
     if (!r->looks)
         return true;
+    if (d->begun) {
+        d->originals = d->begun->looks;
+        return true;
+    }
     csg_look_at_vertex *copy = csg_memory_alloc(r->memory, bytes);
     if (copy)
         memcpy(copy, r->looks, bytes);
@@ -251,7 +258,9 @@ static bool take_arrays(csg_decimation *d)
     d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
     d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
     d->state = csg_memory_alloc(memory, vertices);
-    d->sample_capacity = vertices + triangles + (d->missed ? d->missed->count : 0);
+    d->sample_capacity =
+        d->begun ? d->begun->vertex_count + d->begun->other_count : vertices + triangles;
+    d->sample_capacity += (d->missed ? d->missed->count : 0) + 1;
     d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
     d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
     d->queue = csg_memory_alloc(memory, sizeof *d->queue);
@@ -266,9 +275,14 @@ static bool take_arrays(csg_decimation *d)
            d->room && keep_looks(d);
 }
 
-csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed)
+csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const csg_missed *missed,
+                                 csg_begun_samples *begun)
 {
-    *d = (csg_decimation){.remesh = remesh, .missed = missed};
+    *d = (csg_decimation){.remesh = remesh,
+                          .missed = missed,
+                          .begun = begun,
+                          .low = csg_vec3_make(-INFINITY, -INFINITY, -INFINITY),
+                          .high = csg_vec3_make(INFINITY, INFINITY, INFINITY)};
     if (take_arrays(d) && look_at_mesh(d))
         return CSGM_OK;
     csg_decimation_end(d);
@@ -287,7 +301,8 @@ void csg_decimation_end(csg_decimation *d)
     csg_memory_release(memory, d->state, vertices);
     csg_memory_release(memory, d->samples, d->sample_capacity * sizeof *d->samples);
     csg_memory_release(memory, d->first_sample, triangles * sizeof *d->first_sample);
-    csg_memory_release(memory, (void *)d->originals, vertices * sizeof *d->originals);
+    if (!d->begun)
+        csg_memory_release(memory, (void *)d->originals, vertices * sizeof *d->originals);
     if (d->queue)
         csg_memory_release(memory, d->queue->heap, d->queue->capacity * sizeof *d->queue->heap);
     if (d->room)

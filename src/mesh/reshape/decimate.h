@@ -12,7 +12,7 @@
 
 /* CSGM_OK or CSGM_ERR_MEMORY (reported). The error may grow from one csg_decimate to the next. */
 csgm_status csg_decimation_begin(csg_decimation *decimation, csg_remesh *remesh,
-                                 const csg_missed *missed);
+                                 const csg_missed *missed, csg_begun_samples *begun);
 void csg_decimation_end(csg_decimation *decimation);
 
 enum { CSG_DECIMATE_ALL = 4 /* of triangles: fewer there are never */ };
@@ -20,6 +20,10 @@ enum { CSG_DECIMATE_ALL = 4 /* of triangles: fewer there are never */ };
 /* Collapses what remesh->error allows until `least` triangles are left. CSGM_OK, or why it was
  * stopped (reported). */
 csgm_status csg_decimate(csg_decimation *decimation, uint32_t least);
+
+/* The same in cubes of space alone, within the box from low to high, of a mesh that is a part of
+ * one: what is at its border stays as it is. share: of what is left of the stage, for progress. */
+csgm_status csg_decimate_within(csg_decimation *d, csg_vec3 low, csg_vec3 high, double share);
 
 /* The largest distance of a sample to the mesh as it is now, but for those that are farther than
  * the error: these are added to `far`. False: out of memory. */

@@ -129,6 +129,13 @@ static void sample_triangles(csg_decimation *d, const csg_vec3 *normals)
     }
 }
 
+static void add_missed(csg_decimation *d)
+{
+    for (size_t i = 0; d->missed && i < d->missed->count; i++)
+        add_sample(d, d->missed->points[i].at, csg_vec3_make(0, 0, 0),
+                   d->missed->points[i].triangle);
+}
+
 void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
 {
     const csg_remesh *r = d->remesh;
@@ -142,9 +149,35 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
     }
     d->vertex_samples = d->sample_count;
     sample_triangles(d, normals);
-    for (size_t i = 0; d->missed && i < d->missed->count; i++)
-        add_sample(d, d->missed->points[i].at, csg_vec3_make(0, 0, 0),
-                   d->missed->points[i].triangle);
+    add_missed(d);
+}
+
+void csg_begun_samples_release(csg_begun_samples *s, csg_memory *memory)
+{
+    csg_memory_release(memory, s->of_vertices, s->vertex_capacity * sizeof *s->of_vertices);
+    csg_memory_release(memory, s->others, s->other_capacity * sizeof *s->others);
+    s->of_vertices = s->others = NULL;
+    s->vertex_count = s->vertex_capacity = s->other_count = s->other_capacity = 0;
+}
+
+static void take(csg_decimation *d, const csg_surface_sample *samples, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t s = d->sample_count++, triangle = samples[i].next;
+        d->samples[s] = samples[i];
+        d->samples[s].next = d->first_sample[triangle];
+        d->first_sample[triangle] = s;
+    }
+}
+
+void csg_decimation_take_samples(csg_decimation *d)
+{
+    memset(d->first_sample, 0xFF, d->remesh->corners.triangle_count * sizeof *d->first_sample);
+    take(d, d->begun->of_vertices, d->begun->vertex_count);
+    d->vertex_samples = d->sample_count;
+    take(d, d->begun->others, d->begun->other_count);
+    csg_begun_samples_release(d->begun, d->remesh->memory);
+    add_missed(d);
 }
 
 /* ---- handing over ------------------------------------------------------------------------------

@@ -39,6 +39,17 @@ typedef struct csg_surface_sample {
     int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
 
+/* Samples of a mesh that was thinned out in parts before it was joined: `next` is the triangle that
+ * answers for one. looks: of those that were vertices; NULL as remesh->looks. */
+typedef struct csg_begun_samples {
+    csg_surface_sample *of_vertices, *others;
+    csg_look_at_vertex *looks;
+    size_t vertex_count, vertex_capacity, other_count, other_capacity, look_capacity;
+} csg_begun_samples;
+
+/* All but the looks. */
+void csg_begun_samples_release(csg_begun_samples *samples, csg_memory *memory);
+
 /* The triangles around an edge, as they would be after its collapse, or flip: a fan around
  * after[0][0]. */
 typedef struct csg_collapse_room {
@@ -74,6 +85,8 @@ typedef struct csg_decimation {
     uint32_t *first_sample;              /* per triangle; NONE ends its list */
     const csg_look_at_vertex *originals; /* of the vertices' samples; NULL as remesh->looks */
     const csg_missed *missed;            /* may be NULL */
+    csg_begun_samples *begun; /* in place of those of the mesh; NULL: there are none. They are taken
+                                 over, their looks are read */
     uint32_t sample_count, vertex_samples;
     size_t sample_capacity;
     csg_collapse_queue *queue;
@@ -103,6 +116,8 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
 
 /* normals: the mean of the triangles at each vertex. */
 void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
+/* Those that the mesh has begun with. */
+void csg_decimation_take_samples(csg_decimation *d);
 /* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
  * left. items: its triangles, of which some may be of others; NULL: all there are. CSGM_OK,
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */

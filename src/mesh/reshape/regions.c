@@ -92,8 +92,10 @@ static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3
         return false;
     double margin = margin_of(c->d->remesh);
     csg_vec3 by = {margin, margin, margin};
+    csg_box box = csg_box_intersect((csg_box){low, high}, (csg_box){c->d->low, c->d->high});
     region *new = &c->regions[c->region_count];
-    *new = (region){c->item_count, count, csg_vec3_add(low, by), csg_vec3_sub(high, by), 0, 0, 0};
+    *new = (region){
+        c->item_count, count, csg_vec3_add(box.min, by), csg_vec3_sub(box.max, by), 0, 0, 0};
     memcpy(c->items + c->item_count, ids, count * sizeof *ids);
     for (uint32_t i = 0; i < count; i++) {
         if (!is_in(&c->boxes[ids[i]], new->low, new->high))
@@ -188,7 +190,7 @@ static bool make_cubes(cutting *c, int round)
     for (uint32_t t = 0; t < count; t++) {
         csg_vec3 v[3];
         c->inside[t] = CSG_CORNER_NONE;
-        if (!csg_corners_is_live(&r->corners, t))
+        if (!csg_corners_is_live(&r->corners, t) || t < r->closing)
             continue;
         csg_triangle_tree_corners(&r->tree, t, v);
         c->boxes[t] = csg_triangle_box_of(v);
@@ -345,7 +347,7 @@ static csgm_status exchange_regions(cutting *c, csgm_status own)
 /* ---- rounds ------------------------------------------------------------------------------------
  */
 
-static csgm_status run_round(cutting *c, int round)
+static csgm_status run_round(cutting *c, int round, double share)
 {
     csg_remesh *r = c->d->remesh;
     if (!make_cubes(c, round) || !order_regions(c))
@@ -356,7 +358,7 @@ static csgm_status run_round(cutting *c, int round)
     c->d->region_of = c->region_of;
     for (uint32_t i = 0; i < c->worker_count; i++)
         c->workers[i].decimation.region_of = c->region_of;
-    csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, ROUND_SHARE);
+    csg_mesh_take(r->watch, CSGM_STAGE_RESHAPE, share);
     csgm_status status = CSGM_OK;
     if (!csg_ranks_run(r->context, c->region_count, CSG_ITEMS_LARGE, thin_out_region,
                        report_regions, c))
@@ -493,7 +495,7 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     csgm_status status = begin(&c, in_cubes) ? CSGM_OK : CSGM_ERR_MEMORY;
     for (int round = 0; round < ROUNDS && in_cubes && status == CSGM_OK; round++) {
         CSG_ZONE(r->context, "cubes");
-        status = run_round(&c, round);
+        status = run_round(&c, round, ROUND_SHARE);
     }
     if (status == CSGM_OK && in_cubes)
         status = make_tree_again(r);
@@ -509,6 +511,21 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     }
     if (status == CSGM_OK)
         status = make_tree_again(r);
+    end(&c);
+    return c.is_reported ? status : report_end(r, status);
+}
+
+csgm_status csg_decimate_within(csg_decimation *d, csg_vec3 low, csg_vec3 high, double share)
+{
+    csg_remesh *r = d->remesh;
+    cutting c = {.d = d};
+    memset(d->state, CSG_VERTEX_FRESH, r->corners.vertex_count);
+    d->least_quality = LEAST_QUALITY;
+    d->low = low;
+    d->high = high;
+    csgm_status status = begin(&c, true) ? CSGM_OK : CSGM_ERR_MEMORY;
+    for (int round = 0; round < ROUNDS && status == CSGM_OK; round++)
+        status = run_round(&c, round, share / ROUNDS);
     end(&c);
     return c.is_reported ? status : report_end(r, status);
 }

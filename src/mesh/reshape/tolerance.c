@@ -51,11 +51,6 @@ static csgm_status choose_cells(csg_remesh *r, csg_mesh_goal *goal)
 /* ---- one try ----------------------------------------------------------------------------------
  */
 
-static bool has_count(const csg_mesh_goal *goal)
-{
-    return goal->triangles || goal->share > 0;
-}
-
 /* With errors that double until few enough triangles are left. A share of a mesh that cells made
  * within an error is that of the triangles which the error leaves, not of those that it began with:
  * nobody has seen these. */
@@ -81,22 +76,34 @@ static csgm_status reach_count(csg_decimation *d, csg_mesh_goal *goal)
     return status;
 }
 
+double csg_mesh_goal_error(const csg_mesh_goal *goal)
+{
+    return goal->care * goal->error;
+}
+
 /* Triangles whose vertices lie on a curved surface are all on its one side. With vertices that lie
  * a little on the other they are larger by half, and as near. That is for those who ask how near
  * the mesh is; others want to find its vertices where the surface is. */
+double csg_mesh_goal_farthest(const csg_mesh_goal *goal)
+{
+    static const double OFF = 0.75; /* of what changes may make */
+    return goal->proves && !csg_mesh_goal_has_count(goal) ? OFF * csg_mesh_goal_error(goal) : 0;
+}
+
 static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed *missed,
                             csg_far_places *far)
 {
-    static const double OFF = 0.75; /* of what changes may make */
     CSG_ZONE(r->context, "decimation");
     csg_decimation d;
-    r->error = goal->care * goal->error;
-    csgm_status status = csg_decimation_begin(&d, r, missed);
+    r->error = csg_mesh_goal_error(goal);
+    csgm_status status =
+        csg_decimation_begin(&d, r, missed, goal->joined ? &goal->joined->samples : NULL);
     if (status != CSGM_OK)
         return status;
-    d.farthest_vertex = goal->proves && !has_count(goal) ? OFF * r->error : 0;
-    status = has_count(goal) ? reach_count(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
-    double error = goal->proves && !has_count(goal) ? goal->error : INFINITY;
+    d.farthest_vertex = csg_mesh_goal_farthest(goal);
+    status =
+        csg_mesh_goal_has_count(goal) ? reach_count(&d, goal) : csg_decimate(&d, CSG_DECIMATE_ALL);
+    double error = goal->proves && !csg_mesh_goal_has_count(goal) ? goal->error : INFINITY;
     if (status == CSGM_OK && !csg_decimation_measure(&d, error, far, &goal->measured))
         status = csg_context_no_memory(r->context);
     csg_decimation_end(&d);
@@ -108,9 +115,9 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal, const csg_far_place
 {
     CSG_ZONE(r->context, "distance proof");
     csg_distance_proof proof;
-    goal->allowed = goal->error > 0 && !has_count(goal) ? goal->error : r->error;
+    goal->allowed = goal->error > 0 && !csg_mesh_goal_has_count(goal) ? goal->error : r->error;
     goal->bound = INFINITY;
-    if (has_count(goal) || !goal->proves)
+    if (csg_mesh_goal_has_count(goal) || !goal->proves)
         return CSGM_OK; /* a proof might refine it again: every collapse was checked, that is all */
     csgm_status status = csg_refine_until_near(r, goal->allowed, far, &proof);
     if (status != CSGM_OK)
@@ -149,7 +156,7 @@ static double measure(const csg_remesh *r, const csg_mesh_goal *goal, const csg_
 
 static csgm_status thin_and_prove(csg_remesh *r, csg_mesh_goal *goal, csg_far_places *far)
 {
-    bool thins = goal->error > 0 || has_count(goal);
+    bool thins = goal->error > 0 || csg_mesh_goal_has_count(goal);
     csg_missed missed;
     csgm_status status = find_missed(r, goal, &missed);
     if (status == CSGM_OK && thins && !(goal->cell_size > 0))
@@ -177,7 +184,7 @@ static csgm_status thin_and_prove(csg_remesh *r, csg_mesh_goal *goal, csg_far_pl
 static csgm_status try_goal(csg_remesh *r, csg_mesh_goal *goal)
 {
     csg_far_places far = {0};
-    goal->begun = r->corners.live;
+    goal->begun = goal->joined ? goal->joined->begun : r->corners.live;
     csgm_status status = goal->chooses ? choose_cells(r, goal) : CSGM_OK;
     if (status == CSGM_OK && !(goal->cell_size > 0))
         status = thin_and_prove(r, goal, &far);
@@ -191,7 +198,9 @@ csgm_status csg_mesh_reshape(csg_mesh_goal *goal, csgm_mesh **mesh, const csg_ma
     CSG_ZONE(watch->context, "reshape");
     csg_remesh remesh;
     double begin_s = csg_clock_now_s();
-    csgm_status status = csg_remesh_begin(&remesh, *mesh, goal->is_own, marching, watch);
+    const csg_remesh_origin origin = {.is_own = goal->is_own,
+                                      .kinds = goal->joined ? goal->joined->kinds : NULL};
+    csgm_status status = csg_remesh_begin(&remesh, *mesh, &origin, marching, watch);
     if (status == CSGM_OK) {
         status = try_goal(&remesh, goal);
         *mesh = remesh.mesh;

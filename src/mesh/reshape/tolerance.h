@@ -7,7 +7,7 @@
 #ifndef CSG_MESH_RESHAPE_TOLERANCE_H
 #define CSG_MESH_RESHAPE_TOLERANCE_H
 
-#include "mesh/remesh/remesh.h"
+#include "mesh/reshape/joined.h"
 
 /* What is wanted of one field's mesh, and what came of it. */
 typedef struct csg_mesh_goal {
@@ -16,13 +16,14 @@ typedef struct csg_mesh_goal {
     uint64_t triangles; /* that may stay, in place of `share`; errors then grow from `error` on */
     bool proves;        /* the error holds everywhere, or it is said where not; else of samples */
     bool improve;
-    bool sharp;           /* creases are kept */
-    bool chooses;         /* the cell size */
-    bool follows;         /* the shape, with its cells */
-    bool is_own;          /* it begins with the triangles of polyhedra: it is the surface */
-    csgm_mesh *own;       /* these, for the next try, which takes them over; NULL: none */
-    double finer;         /* of the error: what these are made for */
-    double asked;         /* the error before it was raised, since it took too many cells */
+    bool sharp;         /* creases are kept */
+    bool chooses;       /* the cell size */
+    bool follows;       /* the shape, with its cells */
+    bool is_own;        /* it begins with the triangles of polyhedra: it is the surface */
+    csgm_mesh *own;     /* these, for the next try, which takes them over; NULL: none */
+    csg_joined *joined; /* the mesh was thinned out in tiles: their samples and kinds; else NULL */
+    double finer;       /* of the error: what these are made for */
+    double asked;       /* the error before it was raised, since it took too many cells */
     csgm_normals normals; /* of the result */
     double care;          /* of the error: what changes may make, so that the proof has room */
     double started_s;     /* for the time limit of all tries */
@@ -37,6 +38,16 @@ typedef struct csg_mesh_goal {
     bool unproven;       /* it would have taken too long: measured only */
     bool tight;          /* `share` was out of reach */
 } csg_mesh_goal;
+
+/* Whether a number of triangles is asked for, and not an error alone. */
+static inline bool csg_mesh_goal_has_count(const csg_mesh_goal *goal)
+{
+    return goal->triangles || goal->share > 0;
+}
+/* What changes may make of the error, and how far a new vertex may be from the surface: csg_remesh
+ * and csg_decimation have them. */
+double csg_mesh_goal_error(const csg_mesh_goal *goal);
+double csg_mesh_goal_farthest(const csg_mesh_goal *goal);
 
 /* Thins out and improves *mesh as the goal says, as marching made it; its blocks are at hand. *mesh
  * is then another one, unless the goal asks for another try. */

@@ -146,11 +146,11 @@ static void tell_what_needs_less(cli_app *app)
     const cli_options *options = app->options;
     bool alone = can_go_straight_to_file(options) && is_streamed(options, 0);
     if (!has_equal_cells(options))
-        cli_console_say(&app->console, CSGM_NOTE, NULL,
-                        "cells that follow the shape need the whole mesh in memory; equal cells do "
-                        "not: -r %d%s",
-                        CELLS[options->quality],
-                        alone ? "" : ", with one output that is PLY, STL or GLB");
+        cli_console_say(
+            &app->console, CSGM_NOTE, NULL,
+            "cells that follow the shape need all of their lattice in memory; equal cells "
+            "do not: -r %d%s",
+            CELLS[options->quality], alone ? "" : ", with one output that is PLY, STL or GLB");
     else if (!alone)
         cli_console_say(&app->console, CSGM_NOTE, NULL,
                         "one PLY, STL or GLB file alone is written while the mesh is made, which "
