@@ -527,7 +527,7 @@ static bool balance(csg_bricks *b, list *unbalanced, size_t *seen)
             return false;
     for (size_t i = 0; i < unbalanced->count; i++) {
         uint32_t number = unbalanced->number[i];
-        if (b->items[number].divided != CSG_BRICK_ALL_CELLS && want_balance(b, &b->items[number]))
+        if (csg_brick_has_leaves(&b->items[number]) && want_balance(b, &b->items[number]))
             unbalanced->number[kept++] = number;
     }
     unbalanced->count = kept;
@@ -662,7 +662,7 @@ bool csg_bricks_leaves(const csg_bricks *b, uint32_t **out, size_t *count)
     if (!leaves)
         return false;
     for (size_t i = 0; i < b->count; i++)
-        if (b->items[i].divided != CSG_BRICK_ALL_CELLS) {
+        if (csg_brick_has_leaves(&b->items[i])) {
             leaves[n].brick = (uint32_t)i;
             for (int axis = 0; axis < 3; axis++)
                 leaves[n].point[axis] = csg_brick_point(b, &b->items[i], axis, 0);

@@ -46,6 +46,12 @@ typedef struct csg_brick {
     const struct csg_judged *judged; /* what the judge keeps of it for himself */
 } csg_brick;
 
+/* Some of its cells are not divided. */
+static inline bool csg_brick_has_leaves(const csg_brick *brick)
+{
+    return brick->divided != CSG_BRICK_ALL_CELLS;
+}
+
 typedef struct csg_bricks csg_bricks;
 
 /* Sets which cells of a brick, sampled and all leaves, are `wanted`; it may set the brick's `flat`,

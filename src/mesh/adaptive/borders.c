@@ -146,7 +146,7 @@ static void choose_together(const csg_bricks *b, uint8_t *marks, size_t *first)
     for (i = 0; i < b->count; i++)
         marks[i] &= CHANGED;
     for (i = *first; i < b->count && count < NEAR_TOGETHER; i++)
-        if (marks[i] & CHANGED && csg_cell_loop_has_leaves(&b->items[i])) {
+        if (marks[i] & CHANGED && csg_brick_has_leaves(&b->items[i])) {
             csg_cell_loop_mark_around(b, (uint32_t)i, marks);
             marks[i] |= CHOSEN;
             count++;
@@ -160,11 +160,7 @@ static csgm_status check_together(csg_extraction *x, const uint8_t *marks, bool 
     const double reported = x->bricks->reported;
     csgm_status status = csg_cell_loop_begin(&w, x);
     if (status == CSGM_OK)
-        status = csg_cell_loop_list_marked(&w, marks, CSG_MARK_AROUND);
-    if (status == CSGM_OK)
-        csg_cell_loop_keep_shells(&w);
-    if (status == CSGM_OK)
-        status = csg_cells_find_vertices(&w, reported, 0);
+        status = csg_cells_find_vertices_around(&w, marks, reported, 0);
     if (status == CSGM_OK)
         status = csg_cell_loop_list_marked(&w, marks, CHOSEN);
     if (status == CSGM_OK)

@@ -338,7 +338,7 @@ csgm_status csg_cell_loop_list_marked(csg_cell_loop *w, const uint8_t *marks, ui
     const csg_bricks *b = w->x->bricks;
     csg_cell_loop_clear(w);
     for (size_t i = 0; i < b->count; i++)
-        if (marks[i] & mark && csg_cell_loop_has_leaves(&b->items[i]) &&
+        if (marks[i] & mark && csg_brick_has_leaves(&b->items[i]) &&
             !csg_cell_loop_list(w, (uint32_t)i))
             return csg_context_no_memory(w->x->context);
     return CSGM_OK;

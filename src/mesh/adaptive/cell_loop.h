@@ -73,10 +73,6 @@ void csg_cell_loop_mark_around(const csg_bricks *bricks, uint32_t number, uint8_
 /* Lists the bricks that have leaves and this mark, and no others. CSGM_OK or CSGM_ERR_MEMORY
  * (reported). */
 csgm_status csg_cell_loop_list_marked(csg_cell_loop *loop, const uint8_t *marks, uint8_t mark);
-static inline bool csg_cell_loop_has_leaves(const csg_brick *brick)
-{
-    return brick->divided != CSG_BRICK_ALL_CELLS;
-}
 /* Without the bricks that are listed. */
 void csg_cell_loop_clear(csg_cell_loop *loop);
 /* Has the shells of the bricks that are listed made once for all loops over them, if there is

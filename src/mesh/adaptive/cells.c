@@ -232,6 +232,16 @@ csgm_status csg_cells_find_vertices(csg_cell_loop *w, double before, double amou
     return status;
 }
 
+csgm_status csg_cells_find_vertices_around(csg_cell_loop *w, const uint8_t *marks, double before,
+                                           double amount)
+{
+    csgm_status status = csg_cell_loop_list_marked(w, marks, CSG_MARK_AROUND);
+    if (status != CSGM_OK)
+        return status;
+    csg_cell_loop_keep_shells(w);
+    return csg_cells_find_vertices(w, before, amount);
+}
+
 /* ---- polygons ----------------------------------------------------------------------------------
  */
 

@@ -10,6 +10,10 @@
 /* Vertices on edges and in faces of the bricks listed, to be found by their places. before, amount:
  * of the stage's progress. CSGM_OK or why it was stopped (reported). */
 csgm_status csg_cells_find_vertices(csg_cell_loop *loop, double before, double amount);
+/* The same of the bricks that are marked CSG_MARK_AROUND, whose shells are kept: then the
+ * leaves that they were marked around can be listed, and all that these need is there. */
+csgm_status csg_cells_find_vertices_around(csg_cell_loop *loop, const uint8_t *marks, double before,
+                                           double amount);
 
 /* A cell that has a polygon. */
 typedef struct csg_cell_at_hand {

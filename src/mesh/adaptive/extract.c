@@ -180,8 +180,8 @@ csgm_status csg_extract(csg_extraction *x)
 /* ---- a part of it ------------------------------------------------------------------------------
  */
 
-/* The leaves whose edges and faces those of the part may have. */
-static csgm_status list_around(csg_cell_loop *w, const uint32_t *leaves, size_t count)
+/* Those of the leaves whose edges and faces those of the part may have. */
+static csgm_status find_vertices_around(csg_cell_loop *w, const uint32_t *leaves, size_t count)
 {
     csg_memory *memory = &w->x->context->memory;
     const csg_bricks *b = w->x->bricks;
@@ -191,7 +191,7 @@ static csgm_status list_around(csg_cell_loop *w, const uint32_t *leaves, size_t 
     memset(marks, 0, b->count);
     for (size_t i = 0; i < count; i++)
         csg_cell_loop_mark_around(b, leaves[i], marks);
-    csgm_status status = csg_cell_loop_list_marked(w, marks, CSG_MARK_AROUND);
+    csgm_status status = csg_cells_find_vertices_around(w, marks, 0, 0.5);
     csg_memory_release(memory, marks, b->count);
     return status;
 }
@@ -265,11 +265,7 @@ csgm_status csg_extract_part(csg_extraction *x, const uint32_t *leaves, size_t c
     *part = (csg_extracted_part){0};
     csgm_status status = csg_cell_loop_begin(&w, x);
     if (status == CSGM_OK)
-        status = list_around(&w, leaves, count);
-    if (status == CSGM_OK)
-        csg_cell_loop_keep_shells(&w);
-    if (status == CSGM_OK)
-        status = csg_cells_find_vertices(&w, 0, 0.5);
+        status = find_vertices_around(&w, leaves, count);
     if (status == CSGM_OK)
         status = list_part(&w, leaves, count);
     if (status == CSGM_OK)

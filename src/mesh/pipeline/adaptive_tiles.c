@@ -19,7 +19,7 @@ size_t csg_mesh_tile_bricks(const csg_bricks *b, const csg_mesh_goal *goal, uint
 {
     uint64_t leaves = 0;
     for (size_t i = 0; i < b->count; i++)
-        leaves += b->items[i].divided != CSG_BRICK_ALL_CELLS;
+        leaves += csg_brick_has_leaves(&b->items[i]);
     if (!limit_bytes || csg_mesh_goal_has_count(goal) || !(goal->error > 0) ||
         leaves * BYTES_PER_BRICK <= limit_bytes / WHOLE_SHARE)
         return 0;
