@@ -41,14 +41,18 @@ class BatchTest(cli.CliTest):
         return outcomes
 
     def outputs(self, folder="out"):
-        """{name below the folder: bytes} without what is known of them."""
+        """{name below the folder: bytes} without what is known of them. A file that a batch still running
+        renames or removes meanwhile is left out."""
         found = {}
         for place, folders, names in os.walk(self.path(folder)):
             folders[:] = [f for f in folders if f != ".csgmesh-cache"]
             for name in names:
                 path = os.path.join(place, name)
-                with open(path, "rb") as file:
-                    found[os.path.relpath(path, self.path(folder))] = file.read()
+                try:
+                    with open(path, "rb") as file:
+                        found[os.path.relpath(path, self.path(folder))] = file.read()
+                except FileNotFoundError:
+                    pass
         return found
 
     def times(self, folder="out"):
