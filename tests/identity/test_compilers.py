@@ -29,8 +29,9 @@ def build_with(cc, cxx, folder):
     program = os.path.join("tools", "csgmesh", "csgmesh")
     if os.path.exists(os.path.join(folder, "build.ninja")):
         setup.insert(2, "--reconfigure")
+    cached = "ccache " if shutil.which("ccache") else ""
     for command in (setup, ["ninja", "-C", folder, program]):
-        result = subprocess.run(command, env={**os.environ, "CC": cc, "CXX": cxx}, text=True,
+        result = subprocess.run(command, env={**os.environ, "CC": cached + cc, "CXX": cached + cxx}, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
         if result.returncode != 0:
             raise AssertionError(f"{' '.join(command)}\n{result.stdout[-4000:]}")
