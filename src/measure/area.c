@@ -222,7 +222,7 @@ static void find_faces(double half, const csg_halves *halves, const csg_taylor_p
  * turn too far to be of use. */
 static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_halves *halves)
 {
-    static const double MOST = 0.5; /* of the slope */
+    static const double MOST = 0.9; /* of the slope */
     double radius = csg_enclosure_radius(q->half);
     csg_enclosure *e = &halves->planes[0];
     if (!csg_tape_taylor_pieces(&q->tape, q->c, radius, f))
