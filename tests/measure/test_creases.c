@@ -163,10 +163,61 @@ static void columns_of_several_pieces_hold(void **state)
     try_box(60000253, &seen);
 }
 
+/* Two solids joined sharply, blended with a third. */
+static void joins_hold(void **state)
+{
+    tally seen = {0};
+    for (uint64_t i = 0; i < 40 * test_times; i++) {
+        csg_random random = {.state = seed = 43000 + test_first_seed + i};
+        const csg_blend blend = {KINDS[i % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6)};
+        csg_node_id ids[3];
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        for (int k = 0; k < 3; k++) {
+            ids[k] = k ? random_other(&m, &random) : random_box(&m, &random);
+            ids[k] = posed_anyhow(&m, ids[k], &random);
+        }
+        csg_node_id creased = joined(&m, JOINS[i / 4 % 3], SHARP, ids[0], ids[1]);
+        csg_node_id solid = joined(&m, JOINS[i % 3], blend, creased, ids[2]);
+        try_solid(&m, solid, &random, blend.kind != CSG_BLEND_FILLET, &seen);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.pieces > 1000 * test_times && seen.values > 60000 * test_times);
+    assert_true(seen.gradients > 50000 * test_times);
+    assert_true(seen.volumes > 130 * test_times && seen.areas > 30 * test_times);
+}
+
+/* A cube where the nearer face of a box changes and both blend with a plane, at different angles:
+ * the number of its models, 0: none. */
+static int count_models(csg_blend blend)
+{
+    static const double CENTRE[3] = {0.9, 0.9, 0}, HALF = 1.0 / 64;
+    csg_taylor_pieces f;
+    mesh_case m;
+    mesh_case_begin(&m, 1);
+    csg_node_id box = make_box(&m, 1, 1, 1), plane = make_half_space(&m, 0.8, 0.6, 0, 1.36);
+    mesh_case_compile(&m, joined(&m, CSG_NODE_INTERSECTION, blend, box, plane));
+    const csg_vec3 o = m.field->center;
+    const double c[3] = {CENTRE[0] - o.x, CENTRE[1] - o.y, CENTRE[2] - o.z};
+    int count = find_pieces(&m, c, HALF, &f) ? f.count : 0;
+    mesh_case_end(&m);
+    return count;
+}
+
+/* A fillet turns on the angle between its operands' gradients, so its field jumps where that does:
+ * no pieces tell of it how large the surface is. A round does not. */
+static void fillets_of_creases_have_no_models(void **state)
+{
+    assert_int_equal(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}), 0);
+    assert_true(count_models((csg_blend){CSG_BLEND_ROUND, 0.5}) > 1);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_hold),
+        cmocka_unit_test(joins_hold),
+        cmocka_unit_test(fillets_of_creases_have_no_models),
         cmocka_unit_test(columns_of_several_pieces_hold),
     };
     test_take_search(argc, argv);

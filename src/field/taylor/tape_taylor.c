@@ -143,6 +143,23 @@ static bool join_smoothly(csg_taylor_walk *w, const csg_tape_node *node, csg_tay
     return blend_two(w, node, &first, &b->f, turn, &a->f);
 }
 
+/* One of two that each are the larger one somewhere. */
+static bool decide(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_operand *b,
+                   double turn)
+{
+    static const bool BOTH[2] = {true, true};
+    csg_taylor over = csg_taylor_sum(&a->f, -1, &b->f);
+    int which = csg_taylor_walk_choose(w, BOTH, 2);
+    if (which < 0)
+        return false;
+    over = csg_taylor_scaled(&over, which ? -turn : turn);
+    csg_taylor_walk_require(w, &over, 0);
+    if (which)
+        *a = *b;
+    a->is_creased = true;
+    return true;
+}
+
 static bool join_siblings(csg_taylor_walk *w, uint32_t index)
 {
     const csg_tape_node *node = &w->tape->nodes[index];
@@ -156,7 +173,7 @@ static bool join_siblings(csg_taylor_walk *w, uint32_t index)
         int which = decider(w, a, b, turn, signs);
         if (which == 1)
             *a = *b;
-        return which >= 0;
+        return which >= 0 || (!signs && decide(w, a, b, turn));
     }
     return (node->join_blend == CSG_BLEND_PARABOLA || node->join_blend == CSG_BLEND_HYPERBOLA) &&
            join_smoothly(w, node, a, b, turn);
