@@ -36,7 +36,7 @@ double graph_turn_at(const csg_taylor *f, const double x[3])
 
 int graph_is_there(const csg_taylor_piece *piece, const double x[3])
 {
-    int all = 1;
+    int all = piece->condition_count < CSG_TAYLOR_CONDITIONS; /* more would not have been kept */
     for (int n = 0; n < piece->condition_count; n++) {
         const csg_taylor *g = &piece->conditions[n];
         double value = graph_polynomial_at(g, x), room = graph_room_at(g, x);
@@ -183,8 +183,15 @@ static bool find_area(const graph_field *f, const double c[3], double half, int 
 bool graph_try_area(const graph_field *f, const double c[3], double half)
 {
     double whole[2], parts[2], room = 1e-12 * half * half;
+    csg_taylor_pieces models;
     if (!find_area(f, c, half, 1, whole) || !find_area(f, c, half, SIDE, parts))
         return false;
+    double most = f->find(f->user, c, half, &models) ? csg_graph_area_most(&models, half, 0.9) : 0;
+    if (parts[0] > most + room)
+        fail_msg("seed %" PRIu64
+                 ": the area in a cube of half %g at (%.9g, %.9g, %.9g) is %.12g at "
+                 "most, by its parts %.12g at least",
+                 f->seed, half, c[0], c[1], c[2], most, parts[0]);
     if (whole[0] > parts[1] + room || parts[0] > whole[1] + room)
         fail_msg("seed %" PRIu64 ": the area in a cube of half %g at (%.9g, %.9g, %.9g) is between "
                  "%.12g and %.12g, by its parts between %.12g and %.12g",

@@ -187,15 +187,16 @@ static void joins_hold(void **state)
     assert_true(seen.volumes > 130 * test_times && seen.areas > 30 * test_times);
 }
 
-/* A cube where the nearer face of a box changes and both blend with a plane, at different angles:
- * the number of its models, 0: none. */
-static int count_models(csg_blend blend)
+/* A cube where the nearer face of a box changes, 0.1 inside, and a plane is at different angles to
+ * them, that far beyond: the number of its models, 0: none. */
+static int count_models(csg_blend blend, double beyond)
 {
     static const double CENTRE[3] = {0.9, 0.9, 0}, HALF = 1.0 / 64;
     csg_taylor_pieces f;
     mesh_case m;
     mesh_case_begin(&m, 1);
-    csg_node_id box = make_box(&m, 1, 1, 1), plane = make_half_space(&m, 0.8, 0.6, 0, 1.36);
+    csg_node_id box = make_box(&m, 1, 1, 1);
+    csg_node_id plane = make_half_space(&m, 0.8, 0.6, 0, 1.36 + beyond);
     mesh_case_compile(&m, joined(&m, CSG_NODE_INTERSECTION, blend, box, plane));
     const csg_vec3 o = m.field->center;
     const double c[3] = {CENTRE[0] - o.x, CENTRE[1] - o.y, CENTRE[2] - o.z};
@@ -206,10 +207,11 @@ static int count_models(csg_blend blend)
 
 /* A fillet turns on the angle between its operands' gradients, so its field jumps where that does:
  * no pieces tell of it how large the surface is. A round does not. */
-static void fillets_of_creases_have_no_models(void **state)
+static void blending_fillets_of_creases_have_no_models(void **state)
 {
-    assert_int_equal(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}), 0);
-    assert_true(count_models((csg_blend){CSG_BLEND_ROUND, 0.5}) > 1);
+    assert_int_equal(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}, 0), 0);
+    assert_true(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}, 0.5) > 1); /* nothing blends */
+    assert_true(count_models((csg_blend){CSG_BLEND_ROUND, 0.5}, 0) > 1);
 }
 
 int main(int argc, char **argv)
@@ -217,7 +219,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_hold),
         cmocka_unit_test(joins_hold),
-        cmocka_unit_test(fillets_of_creases_have_no_models),
+        cmocka_unit_test(blending_fillets_of_creases_have_no_models),
         cmocka_unit_test(columns_of_several_pieces_hold),
     };
     test_take_search(argc, argv);

@@ -367,11 +367,12 @@ static meeting find_meeting(csg_taylor_walk *w, const csg_taylor_operand *a,
     csg_taylor x = csg_taylor_sum(&a->f, -1, &b->f), inside[2];
     if (turn * x.value - csg_taylor_reach(&x, w->radius) > CSG_FILLET_PAIR_REACH * r)
         return FIRST;
-    if (a->is_creased || b->is_creased) /* so may the turn, and the fillet with it */
-        return UNKNOWN;
     if (!find_turn(w, a, b, d) || !(csg_taylor_walk_most(w, d) < CSG_FILLET_FADE))
         return UNKNOWN;
-    if (csg_taylor_walk_most(w, d) < ROUNDING && isfinite(csg_taylor_walk_apart(w, &x))) {
+    bool is_creased =
+        a->is_creased || b->is_creased; /* so the turn may jump, and with it a fillet */
+    if (!is_creased && csg_taylor_walk_most(w, d) < ROUNDING &&
+        isfinite(csg_taylor_walk_apart(w, &x))) {
         /* what is added is most where both are equal, r d / 4 and a little */
         *more = csg_taylor_walk_apart(w, &x) + 0.26 * r * csg_taylor_walk_most(w, d);
         return FLUSH;
@@ -383,6 +384,8 @@ static meeting find_meeting(csg_taylor_walk *w, const csg_taylor_operand *a,
         possible[i] = !(csg_taylor_walk_least(w, &inside[i]) > 0);
         possible[BLENDING] &= csg_taylor_walk_most(w, &inside[i]) > 0;
     }
+    if (is_creased && possible[BLENDING])
+        return UNKNOWN;
     int way = csg_taylor_walk_choose(w, possible, 3);
     double off = 0x1p-22 * r;
     for (int i = 0; i < 2 && way == BLENDING; i++)

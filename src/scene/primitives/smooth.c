@@ -82,10 +82,37 @@ static bool round_of_box(const csg_smooth_leaf *l, const csg_smooth *const *out_
     return true;
 }
 
+/* About an edge or a corner of n faces: the distance is the largest of u . over, u being the unit
+ * vectors without a negative component, inside as well as outside. From the vector v of components
+ * MIDDLE these are no farther than sqrt(1 - 2 MIDDLE + n MIDDLE^2), as their components' sum is 1
+ * at least, so as a function of `over` the distance leaves v . over no faster than that. MIDDLE is
+ * not 1 / n, where that is least: directions, which areas need, are known closer with a longer v.
+ */
+static bool round_of_fan(const csg_smooth_leaf *l, const csg_smooth *const *faces, int count,
+                         double value, csg_smooth *out)
+{
+    static const double MIDDLE = 0.7;
+    const csg_taylor *over[3];
+    double most = sqrt(1 - 2 * MIDDLE + count * MIDDLE * MIDDLE) * (1 + 1e-12);
+    if (l->choice->signs || l->with_slopes)
+        return false;
+    out->f = csg_taylor_constant(0);
+    for (int i = 0; i < count; i++) {
+        over[i] = &faces[i]->f;
+        out->f = csg_taylor_sum(&out->f, -MIDDLE, over[i]);
+    }
+    csg_taylor_change change = csg_taylor_change_of(over, count, l->radius);
+    l->choice->is_creased = true;
+    out->f.value = value;
+    out->f.error += most * change.most;
+    out->f.turned += most * csg_taylor_steepest(&change, l->radius);
+    return true;
+}
+
 /* Inside, and about an edge, where one of two faces is the nearer one or the edge is: where a face
  * is, the other one is no farther out, and not out at all. */
 static bool choose_nearer_face(const csg_smooth_leaf *l, const csg_smooth *const faces[2],
-                               double round, csg_smooth *out)
+                               double round, double value, csg_smooth *out)
 {
     enum { EDGE = 2, WAYS };
     csg_smooth over_other = csg_smooth_sum(l, faces[0], -1, faces[1]);
@@ -102,7 +129,7 @@ static bool choose_nearer_face(const csg_smooth_leaf *l, const csg_smooth *const
     if (way == EDGE) {
         for (int i = 0; i < 2; i++)
             csg_smooth_require(l, 1, faces[i]);
-        return round_of_box(l, faces, 2, round, out);
+        return round_of_box(l, faces, 2, round, out) || round_of_fan(l, faces, 2, value, out);
     }
     csg_smooth_require(l, way ? -1 : 1, &over_other);
     if (may_be_out[1 - way])
@@ -172,9 +199,10 @@ static bool choose_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes
 }
 
 /* A face where one coordinate is farther out than the others, which are inside; an edge or a corner
- * where two or three are out; else, if there is a choice, what may be either. */
+ * where two or three are out; else, if there is a choice, what may be either. value: the box's at
+ * the ball's centre. */
 static bool find_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes, int widest,
-                        double round, csg_smooth *out)
+                        double round, double value, csg_smooth *out)
 {
     const csg_smooth *out_there[3], *near[3];
     int outside = 0, inside = 0, near_count = 0;
@@ -198,7 +226,10 @@ static bool find_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes, 
         return false;
     if (outside || l->choice->signs)
         return choose_of_box(l, of, axes, round, out);
-    return near_count == 2 && is_told && choose_nearer_face(l, near, round, out);
+    if (!is_told)
+        return false;
+    return near_count == 2 ? choose_nearer_face(l, near, round, value, out)
+                           : round_of_fan(l, near, near_count, value, out);
 }
 
 bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round, int axes,
@@ -216,7 +247,7 @@ bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round
             widest = i;
         }
     }
-    double distance = square > 0 ? sqrt(square) : farthest;
-    return find_of_box(l, of, axes, widest, round, out) ||
-           csg_smooth_steepest(l, round - distance, out);
+    double value = round - (square > 0 ? sqrt(square) : farthest);
+    return find_of_box(l, of, axes, widest, round, value, out) ||
+           csg_smooth_steepest(l, value, out);
 }
