@@ -171,6 +171,12 @@ csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, do
     return c;
 }
 
+double csg_taylor_steepest(const csg_taylor_change *c, double r)
+{
+    return (c->linear + (c->square + (0.5 * c->cubic + c->thrice * r) * r) * r + c->turned) *
+           (1 + 1e-12);
+}
+
 /* With d = l + b + t the functions' change at |x| = r, l and b its first and second order, the
  * outer function is
  *     value + slope . d + bend(d, d) / 2 + third(d, d, d) / 6 + at most fourth |d|^4,
@@ -370,8 +376,7 @@ csg_taylor csg_taylor_square(const csg_taylor *a, double r)
 static csg_taylor power_near_zero(const csg_taylor *a, const csg_taylor_change *c, double p,
                                   double r)
 {
-    double most = fabs(a->value) + c->most, slope = c->linear + c->turned;
-    slope += (c->square + (0.5 * c->cubic + c->thrice * r) * r) * r;
+    double most = fabs(a->value) + c->most, slope = csg_taylor_steepest(c, r);
     double half = 0.5 * csg_pow(most, p) * (1 + 1e-12);
     return (csg_taylor){
         .value = half, .error = half, .turned = p * csg_pow(most, p - 1) * slope * (1 + 1e-12)};

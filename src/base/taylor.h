@@ -71,6 +71,9 @@ typedef struct csg_taylor_change {
 } csg_taylor_change;
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double radius);
 
+/* No sum of the functions by shares of a unit vector is steeper anywhere in the ball. */
+double csg_taylor_steepest(const csg_taylor_change *change, double radius);
+
 /* The outer function of these. */
 csg_taylor csg_taylor_compose(const csg_taylor_outer *outer, const csg_taylor *const *u, int count,
                               const csg_taylor_change *change, double radius);

@@ -29,6 +29,9 @@ enum {
     UNBOUNDED_DEEPEST = 12 /* levels, where nothing bounds the area: that may be so at any size */
 };
 
+/* Of a gradient: from where on how far others are from it tells nothing of use. */
+static const double STRAY_MOST = 0.9;
+
 /* A cube: its surface's area is within [low, high] + the flow of s out of the solid in it. */
 typedef struct account {
     csg_section faces[FACES]; /* in the solid; 2 * axis + (1: the side of larger coordinates) */
@@ -220,13 +223,11 @@ static void find_faces(double half, const csg_halves *halves, const csg_taylor_p
 
 /* The planes around all pieces of a field, whose gradients are known all over the cube. False: they
  * turn too far to be of use. */
-static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_halves *halves)
+static bool enclose_smooth(const csg_measure_cube *q, const csg_taylor_pieces *f,
+                           csg_halves *halves)
 {
-    static const double MOST = 0.5; /* of the slope */
     double radius = csg_enclosure_radius(q->half);
     csg_enclosure *e = &halves->planes[0];
-    if (!csg_tape_taylor_pieces(&q->tape, q->c, radius, f))
-        return false;
     *e = (csg_enclosure){.value = 0};
     for (int i = 0; i < f->count; i++) {
         e->value += f->of[i].f.value / f->count;
@@ -244,7 +245,19 @@ static bool enclose_smooth(const csg_measure_cube *q, csg_taylor_pieces *f, csg_
     }
     halves->plane_count = halves->length = 1;
     halves->code[0] = 0;
-    return e->stray < MOST * csg_norm3(e->slope);
+    return e->stray < STRAY_MOST * csg_norm3(e->slope);
+}
+
+/* Where nothing else bounds the area: at a crease that pieces meet in at a wide angle. */
+static void take_pieces(const csg_taylor_pieces *f, double half, account *a)
+{
+    double most = csg_graph_area_most(f, half, STRAY_MOST);
+    if (!isfinite(most))
+        return;
+    memset(a->s, 0, sizeof a->s);
+    a->low = 0;
+    a->high = most;
+    a->is_unbounded = false;
 }
 
 static csg_section excess_of(const csg_taylor_pieces *f, const double slope[3], double half,
@@ -312,7 +325,8 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     csg_taylor_pieces f; /* not filled: they are large */
     double turn = 1;
     account *a = out;
-    bool is_smooth = enclose_smooth(q, &f, &halves);
+    bool has_pieces = csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f);
+    bool is_smooth = has_pieces && enclose_smooth(q, &f, &halves);
     if (is_smooth)
         csg_measure_take_state(q, &halves);
     if (!is_smooth && !csg_measure_enclose_with_strays(walk, worker, q, &halves))
@@ -321,6 +335,8 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
         *a = plain(q->half, q->state);
     else
         *a = find_account(user, q, &halves, is_smooth ? &f : NULL, worker->enough, &turn);
+    if (a->is_unbounded && has_pieces)
+        take_pieces(&f, q->half, a);
     return a->is_unbounded && q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
 }
 

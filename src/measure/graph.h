@@ -26,6 +26,12 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_
 bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double enough,
                       double *least, double *most);
 
+/* What the surface's area in the cube is at most, of any pieces whose gradients stay near one
+ * vector all over the ball, by less than this share of it: no line along the vector meets a piece's
+ * surface twice, so its area is no more than that of the cube as it is seen along the vector, over
+ * the least cosine between the two. INFINITY: it is not known. */
+double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most);
+
 /* Of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
  * solid, within *error of *area. False: the surface may not be a graph there. */
 bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "base/geometry.h"
+#include "measure/enclosure.h"
 #include "measure/graph_field.h"
 
 /* The plane's gradient over the face; of A(p) = sqrt(1 + p^2) there its value. */
@@ -179,4 +181,21 @@ bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double 
     *least = e.sums[0] * (1 - 1e-9);
     *most = e.sums[1] * (1 + 1e-9);
     return isfinite(*most);
+}
+
+/* The field's surface is part of those of its pieces. */
+double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most)
+{
+    double radius = csg_enclosure_radius(half), sum = 0;
+    for (int i = 0; i < f->count; i++) {
+        const csg_taylor *of = &f->of[i].f;
+        double length = csg_norm3(of->slope), stray = csg_taylor_stray(of, radius);
+        if (fabs(of->value) > csg_taylor_reach(of, radius))
+            continue;
+        if (!(stray < stray_most * length))
+            return INFINITY;
+        double seen = fabs(of->slope[0]) + fabs(of->slope[1]) + fabs(of->slope[2]);
+        sum += 4 * half * half * seen / sqrt(length * length - stray * stray) * (1 + 1e-9);
+    }
+    return sum;
 }

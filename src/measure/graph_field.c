@@ -201,7 +201,11 @@ static csg_graph_room room_of(const visit *v, const choice *c, uint32_t alive, i
     return off;
 }
 
-static void take(visit *v, const choice *c, int i, const csg_graph_room *off)
+/* Where another one of the pieces `alive` is the surface, that is as far from piece i's as the two
+ * polynomials are and as the other one is off: of all of them the means over the first patch count,
+ * which one piece's own room says nothing of. */
+static void take(visit *v, const choice *c, uint32_t alive, int i, const csg_graph_room *off,
+                 double apart)
 {
     const csg_graph_base *base = &v->g->bases[i];
     if (c->of[i] == CSG_COLUMNS_FULL && v->visitor->fill)
@@ -209,8 +213,9 @@ static void take(visit *v, const choice *c, int i, const csg_graph_room *off)
     if (c->of[i] != CSG_COLUMNS_CROSSED)
         return;
     double shown = v->visitor->cross(v->visitor->user, base, &c->q[i], off);
-    v->errors[i] += shown * v->off[i].most;
-    v->more += shown * (off->most - v->off[i].most);
+    for (int k = 0; k < v->g->count; k++)
+        v->errors[k] += alive >> k & 1 ? shown * v->off[k].most : 0;
+    v->more += shown * apart;
 }
 
 /* Parts of a patch share by the roots of their areas: they stand side by side along lines. */
@@ -257,13 +262,13 @@ static bool look(visit *v, const choice *c, uint32_t alive, int more)
     if (taken < 0)
         return false;
     if (bits == 1u << CSG_COLUMNS_EMPTY || bits == 1u << CSG_COLUMNS_FULL) {
-        take(v, c, taken, &v->off[taken]);
+        take(v, c, alive, taken, &v->off[taken], 0);
         return true;
     }
     if (!(bits >> CSG_COLUMNS_UNKNOWN & 1) && c->of[taken] == CSG_COLUMNS_CROSSED) {
         csg_graph_room off = room_of(v, c, alive, taken, &apart);
         if (is_enough(v, c, taken, &off, apart) || !more) {
-            take(v, c, taken, &off);
+            take(v, c, alive, taken, &off, apart);
             return true;
         }
     }

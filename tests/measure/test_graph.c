@@ -10,6 +10,7 @@
 #include "field/taylor/tape_taylor.h"
 #include "measure/enclosure.h"
 #include "measure/graph.h"
+#include "measure/graph_support.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
@@ -17,33 +18,13 @@
 
 enum { CUBES = 150, POINTS = 40 };
 
-static double polynomial_at(const csg_taylor *f, const double x[3])
-{
-    return csg_taylor_moved(f, x).value;
-}
-
-static double square_of(const double x[3])
-{
-    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
-}
-
-static double room_at(const csg_taylor *f, const double x[3])
-{
-    return f->error + f->quartic * square_of(x) * square_of(x);
-}
-
-static double turn_at(const csg_taylor *f, const double x[3])
-{
-    return f->turned + f->thrice * square_of(x) * sqrt(square_of(x));
-}
-
 /* The reference leaves out of a fillet's gradient how its operands' own turn: differences tell. */
 static bool has_fillets;
 static uint64_t seed; /* of the scene */
 
 typedef struct tally {
     uint32_t known, bent, near, turned;
-    uint32_t pieces, volumes; /* where there are several */
+    uint32_t pieces, volumes, areas; /* where there are several */
 } tally;
 
 /* Along the slope from a random point to where the polynomial is its room and a little more, or as
@@ -57,11 +38,11 @@ static bool find_edge(const csg_taylor *f, csg_random *random, double half, int 
         square += f->slope[k] * f->slope[k];
     }
     for (int i = 0; i < 30; i++) {
-        double off = polynomial_at(f, x) - side * (room_at(f, x) + BEYOND);
+        double off = graph_polynomial_at(f, x) - side * (graph_room_at(f, x) + BEYOND);
         for (int k = 0; k < 3; k++)
             x[k] -= off / square * f->slope[k];
     }
-    double over = side * polynomial_at(f, x) - room_at(f, x);
+    double over = side * graph_polynomial_at(f, x) - graph_room_at(f, x);
     return square > 0.01 && over > 0 && over < 2 * BEYOND &&
            fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2]))) <= half;
 }
@@ -81,8 +62,8 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
         if (i % 4 < 2) {
             for (int k = 0; k < 3; k++)
                 x[k] = csg_random_uniform(random, -half, half);
-            double over = polynomial_at(&f, x);
-            side = over > room_at(&f, x) ? 1 : over < -room_at(&f, x) ? -1 : 0;
+            double over = graph_polynomial_at(&f, x);
+            side = over > graph_room_at(&f, x) ? 1 : over < -graph_room_at(&f, x) ? -1 : 0;
         } else if (!find_edge(&f, random, half, side, x)) {
             continue;
         } else {
@@ -93,14 +74,9 @@ static void try_cube(const mesh_case *m, csg_random *random, const double c[3], 
         if (side * value < 0)
             fail_msg("seed %" PRIu64 ": f = %g at (%.9g, %.9g, %.9g), called %s by the room of %g, "
                      "in a cube of half %g",
-                     seed, value, p.x, p.y, p.z, side > 0 ? "inside" : "outside", room_at(&f, x),
-                     half);
+                     seed, value, p.x, p.y, p.z, side > 0 ? "inside" : "outside",
+                     graph_room_at(&f, x), half);
     }
-}
-
-static void gradient_at(const csg_taylor *f, const double x[3], double out[3])
-{
-    memcpy(out, csg_taylor_moved(f, x).slope, 3 * sizeof *out);
 }
 
 static csg_vec3 gradient_of(const mesh_case *m, csg_vec3 p)
@@ -134,11 +110,11 @@ static void try_gradients(const mesh_case *m, csg_random *random, const double c
         csg_vec3 gradient = gradient_of(m, on);
         d = csg_vec3_sub(on, center);
         const double x[3] = {d.x, d.y, d.z}, g[3] = {gradient.x, gradient.y, gradient.z};
-        double promised[3], off = 0, room = turn_at(&f, x);
+        double promised[3], off = 0, room = graph_turn_at(&f, x);
         if (!(fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))) <= half &&
               fabs(test_sample(m->scene, on).value) < 1e-12))
             continue;
-        gradient_at(&f, x, promised);
+        graph_gradient_at(&f, x, promised);
         for (int k = 0; k < 3; k++)
             off += (g[k] - promised[k]) * (g[k] - promised[k]);
         if (sqrt(off) > room + (has_fillets ? 1e-7 : 1e-9))
@@ -147,20 +123,6 @@ static void try_gradients(const mesh_case *m, csg_random *random, const double c
         assert_true(room < 1e-9 + csg_taylor_stray(&f, 2 * half));
         seen->turned++;
     }
-}
-
-/* Is the point where the piece is the field: 1, it is; -1, it is not; 0, not told. */
-static int is_there(const csg_taylor_piece *piece, const double x[3])
-{
-    int all = 1;
-    for (int n = 0; n < piece->condition_count; n++) {
-        const csg_taylor *g = &piece->conditions[n];
-        double value = polynomial_at(g, x), room = room_at(g, x);
-        if (value < -room)
-            return -1;
-        all = value > room ? all : 0;
-    }
-    return all;
 }
 
 /* Wherever a piece is the field it has its sign, and some piece may be it everywhere. */
@@ -179,8 +141,8 @@ static void try_pieces(const mesh_case *m, csg_random *random, const double c[3]
         double value = test_sample(m->scene, p).value;
         bool any = false;
         for (int n = 0; n < f.count; n++) {
-            double over = polynomial_at(&f.of[n].f, x), room = room_at(&f.of[n].f, x);
-            int there = is_there(&f.of[n], x);
+            double over = graph_polynomial_at(&f.of[n].f, x), room = graph_room_at(&f.of[n].f, x);
+            int there = graph_is_there(&f.of[n], x);
             any |= there >= 0;
             if (there > 0 && fabs(over) > room && over * value < 0)
                 fail_msg("seed %" PRIu64 ": f = %g at (%.9g, %.9g, %.9g), piece %d of %d has %g by "
@@ -194,41 +156,21 @@ static void try_pieces(const mesh_case *m, csg_random *random, const double c[3]
     }
 }
 
-static bool find_solid(const mesh_case *m, const double c[3], double half, csg_graph *out,
-                       int *count)
+static bool find_of_scene(const void *user, const double c[3], double half, csg_taylor_pieces *out)
 {
-    csg_taylor_pieces f;
-    if (!csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), &f))
-        return false;
-    *count = f.count;
-    return csg_graph_find(&f, half, 0, out);
+    const mesh_case *m = user;
+    return csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), out);
 }
 
-/* The volume in the cube and that of its parts do not differ by more than they are off. */
-static void try_volume(const mesh_case *m, const double c[3], double half, tally *seen)
+/* Of several pieces, by parts. */
+static void try_solid_of_pieces(const mesh_case *m, const double c[3], double half, tally *seen)
 {
-    enum { SIDE = 4 };
-    csg_graph whole, part;
-    double volume = 0, error = 0, small = half / SIDE;
-    int count, ignored;
-    if (!find_solid(m, c, half, &whole, &count) || count < 2)
+    const graph_field f = {find_of_scene, m, seed};
+    csg_taylor_pieces pieces;
+    if (!find_of_scene(m, c, half, &pieces) || pieces.count < 2)
         return;
-    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
-        const int of[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
-        double at[3];
-        for (int k = 0; k < 3; k++)
-            at[k] = c[k] + small * (2 * of[k] + 1 - SIDE);
-        if (!find_solid(m, at, small, &part, &ignored))
-            return;
-        volume += part.integrals[0];
-        error += part.error;
-    }
-    if (fabs(volume - whole.integrals[0]) > whole.error + error + 1e-12 * half * half * half)
-        fail_msg("seed %" PRIu64 ": %.9g in a cube of half %g at (%.9g, %.9g, %.9g) is off by %g, "
-                 "by %g at most",
-                 seed, whole.integrals[0], half, c[0], c[1], c[2], volume - whole.integrals[0],
-                 whole.error + error);
-    seen->volumes++;
+    seen->volumes += graph_try_integrals(&f, c, half);
+    seen->areas += graph_try_area(&f, c, half);
 }
 
 /* Cubes near the surface, centres and halves exact as floats. */
@@ -250,7 +192,7 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
         try_gradients(m, random, c, half, seen);
         try_pieces(m, random, c, half, seen);
         if (i % 4 == 0)
-            try_volume(m, c, half, seen);
+            try_solid_of_pieces(m, c, half, seen);
     }
 }
 
@@ -426,14 +368,14 @@ static double excess_of(const csg_taylor *f, double half, int along, double *off
         x[k] = half * ((2 * (n / SIDE) + 1.0) / SIDE - 1);
         x[along] = 0;
         for (int step = 0; step < 8; step++) {
-            gradient_at(f, x, g);
-            x[along] -= polynomial_at(f, x) / g[along];
+            graph_gradient_at(f, x, g);
+            x[along] -= graph_polynomial_at(f, x) / g[along];
         }
-        if (!(fabs(x[along]) < half && fabs(polynomial_at(f, x)) < 1e-9 * half)) {
+        if (!(fabs(x[along]) < half && fabs(graph_polynomial_at(f, x)) < 1e-9 * half)) {
             cut++;
             continue;
         }
-        gradient_at(f, x, g);
+        graph_gradient_at(f, x, g);
         for (int a = 0; a < 3; a++) {
             length += g[a] * g[a];
             with += g[a] * f->slope[a] / slope;
@@ -462,91 +404,17 @@ static int steepest_but(const csg_taylor *f, int but)
     return up;
 }
 
-/* Of the solid through the cube's faces along the plane's normal; *off: as much. */
-static bool find_flow(const csg_taylor *f, double half, double *flow, double *off)
-{
-    double slope = sqrt(square_of(f->slope));
-    *flow = *off = 0;
-    for (int i = 0; i < 6; i++) {
-        double area, error, share = f->slope[i / 2] / slope;
-        if (!csg_graph_face(one(f), half, i / 2, i & 1 ? 1 : -1, 0, &area, &error))
-            return false;
-        *flow += (i & 1 ? share : -share) * area;
-        *off += fabs(share) * error;
-    }
-    return true;
-}
-
-/* Between these the surface's area in the cube is; SIDE^3 parts of it, or 1. */
-static bool find_area(const csg_taylor *f, double half, int side, double between[2])
-{
-    double small = half / side;
-    between[0] = between[1] = 0;
-    for (int i = 0; i < side * side * side; i++) {
-        const double c[3] = {small * (2 * (i % side) + 1 - side),
-                             small * (2 * (i / side % side) + 1 - side),
-                             small * (2 * (i / side / side) + 1 - side)};
-        double flow, off, least, most;
-        csg_taylor moved = csg_taylor_moved(f, c);
-        if (!csg_graph_excess(one(&moved), moved.slope, small, 0, &least, &most) ||
-            !find_flow(&moved, small, &flow, &off))
-            return false;
-        between[0] += flow - off + least;
-        between[1] += flow + off + most;
-    }
-    return true;
-}
-
 typedef struct graph_tally {
     uint32_t known, faces, tight, narrow, close, divided, areas;
 } graph_tally;
 
-/* The same of SIDE^3 parts of the cube, which err by some thousandth of that: they do not differ by
- * more than both. */
-static void try_parts(const csg_taylor *f, double half, const csg_graph *whole, graph_tally *seen)
+static bool find_of_polynomial(const void *user, const double c[3], double half,
+                               csg_taylor_pieces *out)
 {
-    enum { SIDE = 8 };
-    csg_graph sum = {.error = 0};
-    double small = half / SIDE;
-    for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
-        const int of[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
-        double c[3];
-        csg_graph part;
-        for (int k = 0; k < 3; k++)
-            c[k] = small * (2 * of[k] + 1 - SIDE);
-        csg_taylor moved = csg_taylor_moved(f, c);
-        if (!csg_graph_find(one(&moved), small, 0, &part))
-            return;
-        csg_integrals_shift(part.integrals, c);
-        for (int n = 0; n < CSG_INTEGRALS; n++)
-            sum.integrals[n] += part.integrals[n];
-        sum.error += part.error;
-        sum.first += part.first + half * part.error;
-        sum.second += part.second + half * (2 * part.first + half * part.error);
-    }
-    for (int n = 0; n < CSG_INTEGRALS; n++) {
-        bool is_first = n >= CSG_INTEGRAL_X, is_second = n >= CSG_INTEGRAL_XX;
-        double scale = half * half * half * (is_second ? half * half : is_first ? half : 1);
-        double room = is_second  ? whole->second + sum.second
-                      : is_first ? whole->first + sum.first
-                                 : whole->error + sum.error;
-        double off = fabs(whole->integrals[n] - sum.integrals[n]);
-        if (off > room + 1e-12 * scale)
-            fail_msg("seed %" PRIu64 ": integral %d is %g off that of parts, %g promised, of %g",
-                     seed, n, off, room, scale);
-    }
-    seen->divided++;
-}
-
-static void try_area_of_parts(const csg_taylor *f, double half, graph_tally *seen)
-{
-    double whole[2], parts[2], room = 1e-12 * half * half;
-    if (!find_area(f, half, 1, whole) || !find_area(f, half, 8, parts))
-        return;
-    if (whole[0] > parts[1] + room || parts[0] > whole[1] + room)
-        fail_msg("seed %" PRIu64 ": an area of %.12g to %.12g is %.12g to %.12g by parts", seed,
-                 whole[0], whole[1], parts[0], parts[1]);
-    seen->areas++;
+    out->count = 1;
+    out->of[0].f = csg_taylor_moved(user, c);
+    out->of[0].condition_count = 0;
+    return true;
 }
 
 static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
@@ -566,8 +434,10 @@ static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
             fail_msg("seed %" PRIu64 ": integral %d is %g off, %g promised, of %g", seed, n, off,
                      room, scale);
     }
-    try_parts(f, half, &graph, seen);
-    try_area_of_parts(f, half, seen);
+    const graph_field field = {find_of_polynomial, f, seed};
+    static const double CENTRE[3] = {0, 0, 0};
+    seen->divided += graph_try_integrals(&field, CENTRE, half);
+    seen->areas += graph_try_area(&field, CENTRE, half);
     double off, excess = excess_of(f, half, up, &off);
     assert_true(csg_graph_excess(one(f), f->slope, half, 0, &least, &most));
     off += 1e-9 * half * half;

@@ -30,6 +30,25 @@ static void sort_operands(const csg_taylor_operand *of, uint32_t count, double t
     }
 }
 
+/* Of two that both touch, with d half their difference: G = w + mean - sqrt(w^2 / 2 - d^2), turned.
+ */
+static bool find_level_of_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *b,
+                              double width, double turn, csg_taylor *out)
+{
+    csg_taylor under = csg_taylor_constant(width * width / 2), root;
+    csg_taylor d = csg_taylor_sum(a, -1, b);
+    d = csg_taylor_scaled(&d, 0.5);
+    const csg_taylor square = csg_taylor_square(&d, w->radius);
+    under = csg_taylor_sum(&under, -1, &square);
+    if (!csg_taylor_root(&under, w->radius, &root))
+        return false;
+    *out = csg_taylor_walk_mean(a, b, -turn, &root);
+    csg_taylor_walk_share(a, b, 0.5 * turn * d.value / root.value, out);
+    *out = csg_taylor_raised(*out, turn * width);
+    csg_taylor_walk_add_length(width, out);
+    return true;
+}
+
 /* Of m operands that all touch: G = w + mean - sqrt(w^2 / m - mean of (f - mean)^2), turned. */
 static bool find_level(const csg_taylor_walk *w, const csg_taylor_operand *of,
                        const uint32_t *order, uint32_t m, double width, double turn,
@@ -41,12 +60,14 @@ static bool find_level(const csg_taylor_walk *w, const csg_taylor_operand *of,
         *out = of[order[0]].f;
         return true;
     }
+    if (m == 2)
+        return find_level_of_two(w, &of[order[0]].f, &of[order[1]].f, width, turn, out);
     for (uint32_t i = 0; i < m; i++)
         mean = csg_taylor_sum(&mean, 1.0 / m, &of[order[i]].f);
-    for (uint32_t i = 0; i < (m == 2 ? 1 : m); i++) {
+    for (uint32_t i = 0; i < m; i++) {
         csg_taylor d = csg_taylor_sum(&of[order[i]].f, -1, &mean);
         d = csg_taylor_square(&d, w->radius);
-        under = csg_taylor_sum(&under, m == 2 ? -1.0 : -1.0 / m, &d);
+        under = csg_taylor_sum(&under, -1.0 / m, &d);
     }
     if (!csg_taylor_root(&under, w->radius, &root))
         return false;
@@ -188,8 +209,12 @@ static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
     if (count == 1) {
         of[0] = of[in[0]];
     } else {
+        bool is_creased = false;
+        for (uint32_t i = 0; i < count; i++)
+            is_creased |= of[in[i]].is_creased;
         of[0].f = level;
         of[0].is_leaf = false;
+        of[0].is_creased = is_creased;
     }
     return true;
 }
@@ -240,17 +265,19 @@ static bool find_turn(const csg_taylor_walk *w, const csg_taylor_operand *a,
 static bool fillet_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *b,
                        const csg_taylor *d, double r, double turn, csg_taylor *out)
 {
-    csg_taylor x = csg_taylor_sum(a, -1, b), inverse, under, root;
+    csg_taylor difference = csg_taylor_sum(a, -1, b), inverse, under, root;
     csg_taylor rest = csg_taylor_raised(csg_taylor_scaled(d, -1), 2);
-    x = csg_taylor_square(&x, w->radius);
+    csg_taylor square = csg_taylor_square(&difference, w->radius);
     if (!csg_taylor_inverse(d, w->radius, &inverse))
         return false;
-    under = csg_taylor_product(&x, &inverse, w->radius);
+    under = csg_taylor_product(&square, &inverse, w->radius);
     under = csg_taylor_raised(csg_taylor_scaled(&under, -1), 2 * r * r);
     under = csg_taylor_product(&rest, &under, w->radius);
     if (!csg_taylor_root(&under, w->radius, &root))
         return false;
     *out = csg_taylor_walk_mean(a, b, -0.5 * turn, &root);
+    csg_taylor_walk_share(
+        a, b, 0.5 * turn * rest.value * inverse.value * difference.value / root.value, out);
     *out = csg_taylor_raised(*out, turn * r);
     csg_taylor_walk_add_length(r, out);
     return true;
@@ -342,7 +369,10 @@ static meeting find_meeting(csg_taylor_walk *w, const csg_taylor_operand *a,
         return FIRST;
     if (!find_turn(w, a, b, d) || !(csg_taylor_walk_most(w, d) < CSG_FILLET_FADE))
         return UNKNOWN;
-    if (csg_taylor_walk_most(w, d) < ROUNDING && isfinite(csg_taylor_walk_apart(w, &x))) {
+    bool is_creased =
+        a->is_creased || b->is_creased; /* so the turn may jump, and with it a fillet */
+    if (!is_creased && csg_taylor_walk_most(w, d) < ROUNDING &&
+        isfinite(csg_taylor_walk_apart(w, &x))) {
         /* what is added is most where both are equal, r d / 4 and a little */
         *more = csg_taylor_walk_apart(w, &x) + 0.26 * r * csg_taylor_walk_most(w, d);
         return FLUSH;
@@ -354,6 +384,8 @@ static meeting find_meeting(csg_taylor_walk *w, const csg_taylor_operand *a,
         possible[i] = !(csg_taylor_walk_least(w, &inside[i]) > 0);
         possible[BLENDING] &= csg_taylor_walk_most(w, &inside[i]) > 0;
     }
+    if (is_creased && possible[BLENDING])
+        return UNKNOWN;
     int way = csg_taylor_walk_choose(w, possible, 3);
     double off = 0x1p-22 * r;
     for (int i = 0; i < 2 && way == BLENDING; i++)

@@ -7,7 +7,7 @@
 
 #include "base/taylor.h"
 
-enum { CSG_TAYLOR_PIECES = 6, CSG_TAYLOR_CONDITIONS = 6 };
+enum { CSG_TAYLOR_PIECES = 16, CSG_TAYLOR_CONDITIONS = 6 };
 
 /* The field, wherever none of the conditions is negative. */
 typedef struct csg_taylor_piece {

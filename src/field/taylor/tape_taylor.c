@@ -22,8 +22,12 @@ static bool find_leaf(const csg_taylor_walk *w, uint32_t index, int way, int *wa
     if (!csg_taylor_walk_leaf(w, index, false, w->may_decide ? &choice : NULL, &piece))
         return false;
     *ways = w->may_decide ? choice.ways : 1;
-    *o = (csg_taylor_operand){
-        .f = piece.f, .leaf = index, .way = way, .is_known = true, .is_leaf = true};
+    *o = (csg_taylor_operand){.f = piece.f,
+                              .leaf = index,
+                              .way = way,
+                              .is_known = true,
+                              .is_leaf = true,
+                              .is_creased = w->may_decide && choice.is_creased};
     out->condition_count = w->may_decide ? choice.condition_count : 0;
     for (int i = 0; i < out->condition_count; i++) {
         out->conditions[i] = choice.conditions[i];
@@ -89,6 +93,7 @@ static bool blend_two(const csg_taylor_walk *w, const csg_tape_node *node, const
         excess = csg_taylor_square(&x, w->radius);
         excess = csg_taylor_raised(csg_taylor_scaled(&excess, 1 / n), n / 16);
         *out = csg_taylor_walk_mean(a, b, turn, &excess);
+        csg_taylor_walk_share(a, b, 2 * turn * x.value / n, out);
         csg_taylor_walk_add_length(n, out);
         return true;
     case CSG_BLEND_HYPERBOLA:
@@ -96,6 +101,7 @@ static bool blend_two(const csg_taylor_walk *w, const csg_tape_node *node, const
         if (!csg_taylor_norm(pair, 2, w->radius, &excess))
             return false;
         *out = csg_taylor_walk_mean(a, b, 0.5 * turn, &excess);
+        csg_taylor_walk_share(a, b, 0.5 * turn * x.value / excess.value, out);
         csg_taylor_walk_add_length(sqrt(n), out);
         return true;
     default:
@@ -131,8 +137,27 @@ static bool join_smoothly(csg_taylor_walk *w, const csg_tape_node *node, csg_tay
             *a = *b;
         return true;
     }
+    const csg_taylor first = a->f;
     a->is_leaf = false;
-    return blend_two(w, node, &a->f, &b->f, turn, &a->f);
+    a->is_creased |= b->is_creased;
+    return blend_two(w, node, &first, &b->f, turn, &a->f);
+}
+
+/* One of two that each are the larger one somewhere. */
+static bool decide(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_operand *b,
+                   double turn)
+{
+    static const bool BOTH[2] = {true, true};
+    csg_taylor over = csg_taylor_sum(&a->f, -1, &b->f);
+    int which = csg_taylor_walk_choose(w, BOTH, 2);
+    if (which < 0)
+        return false;
+    over = csg_taylor_scaled(&over, which ? -turn : turn);
+    csg_taylor_walk_require(w, &over, 0);
+    if (which)
+        *a = *b;
+    a->is_creased = true;
+    return true;
 }
 
 static bool join_siblings(csg_taylor_walk *w, uint32_t index)
@@ -148,7 +173,7 @@ static bool join_siblings(csg_taylor_walk *w, uint32_t index)
         int which = decider(w, a, b, turn, signs);
         if (which == 1)
             *a = *b;
-        return which >= 0;
+        return which >= 0 || (!signs && decide(w, a, b, turn));
     }
     return (node->join_blend == CSG_BLEND_PARABOLA || node->join_blend == CSG_BLEND_HYPERBOLA) &&
            join_smoothly(w, node, a, b, turn);

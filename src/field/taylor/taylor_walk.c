@@ -62,6 +62,7 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_sl
         choice->signs = w->signs[index] && raise * sigma >= 0;
         choice->at_zero = w->signs[index] && !(fabs(raise) > 0);
         choice->ways = 1;
+        choice->is_creased = false;
         choice->condition_count = 0;
     }
     if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
@@ -105,6 +106,18 @@ csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double
     csg_taylor sum = csg_taylor_sum(a, 1, b);
     sum = csg_taylor_scaled(&sum, 0.5);
     return csg_taylor_sum(&sum, factor, excess);
+}
+
+/* Whatever the slope is, no share's size is less than that by more than 1. */
+void csg_taylor_walk_share(const csg_taylor *a, const csg_taylor *b, double slope, csg_taylor *f)
+{
+    static const double ROUNDING = 1 - 1e-9;
+    const csg_taylor *least = slope > 0 ? b : a;
+    double less = fmin(2 * fabs(slope), 1) * ROUNDING;
+    f->error -= less * least->error;
+    f->quartic -= less * least->quartic;
+    f->turned -= less * least->turned;
+    f->thrice -= less * least->thrice;
 }
 
 int csg_taylor_walk_choose(csg_taylor_walk *w, const bool *possible, int count)

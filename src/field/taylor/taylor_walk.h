@@ -23,6 +23,7 @@ typedef struct csg_taylor_operand {
     uint32_t leaf; /* where it is one alone */
     int way;       /* and of its formulas one (scene/primitives/smooth.h) */
     bool is_known, is_leaf;
+    bool is_creased; /* its gradient may jump in the ball, from one piece to another */
 } csg_taylor_operand;
 
 /* One of a leaf's formulas, and where it holds. */
@@ -86,6 +87,10 @@ void csg_taylor_walk_add_length(double length, csg_taylor *f);
 /* (a + b) / 2 + factor excess. */
 csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double factor,
                                 const csg_taylor *excess);
+
+/* Of f, some (a + b) / 2 + g(a - b), g having this slope at the centre: what a and b are off counts
+ * by their shares, 1/2 +- slope, where sum and difference alone count both by the larger one. */
+void csg_taylor_walk_share(const csg_taylor *a, const csg_taylor *b, double slope, csg_taylor *f);
 
 /* The operators that take all their operands at once. False: the field is not known. */
 bool csg_taylor_walk_round(csg_taylor_walk *w, const csg_tape_node *node);

@@ -51,6 +51,22 @@ bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int c
            (!l->with_slopes || find_slopes(l, u, count, out));
 }
 
+bool csg_smooth_steepest(const csg_smooth_leaf *l, double value, csg_smooth *out)
+{
+    const csg_taylor *const p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
+    if (!l->choice || l->choice->signs || l->with_slopes)
+        return false;
+    csg_taylor_change change = csg_taylor_change_of(p, 3, l->radius);
+    l->choice->is_creased = true;
+    out->f = csg_taylor_constant(value);
+    out->f.error = change.most;
+    out->f.turned = csg_taylor_steepest(&change, l->radius);
+    return true;
+}
+
+/* ---- boxes -------------------------------------------------------------------------------------
+ */
+
 /* round less the distance from a face, an edge or a corner: where these coordinates are out. */
 static bool round_of_box(const csg_smooth_leaf *l, const csg_smooth *const *out_there, int outside,
                          double round, csg_smooth *out)
@@ -66,9 +82,90 @@ static bool round_of_box(const csg_smooth_leaf *l, const csg_smooth *const *out_
     return true;
 }
 
+/* About an edge or a corner of n faces: the distance is the largest of u . over, u being the unit
+ * vectors without a negative component, inside as well as outside. From the vector v of components
+ * MIDDLE these are no farther than sqrt(1 - 2 MIDDLE + n MIDDLE^2), as their components' sum is 1
+ * at least, so as a function of `over` the distance leaves v . over no faster than that. MIDDLE is
+ * not 1 / n, where that is least: directions, which areas need, are known closer with a longer v.
+ */
+static bool round_of_fan(const csg_smooth_leaf *l, const csg_smooth *const *faces, int count,
+                         double value, csg_smooth *out)
+{
+    static const double MIDDLE = 0.7;
+    const csg_taylor *over[3];
+    double most = sqrt(1 - 2 * MIDDLE + count * MIDDLE * MIDDLE) * (1 + 1e-12);
+    if (l->choice->signs || l->with_slopes)
+        return false;
+    out->f = csg_taylor_constant(0);
+    for (int i = 0; i < count; i++) {
+        over[i] = &faces[i]->f;
+        out->f = csg_taylor_sum(&out->f, -MIDDLE, over[i]);
+    }
+    csg_taylor_change change = csg_taylor_change_of(over, count, l->radius);
+    l->choice->is_creased = true;
+    out->f.value = value;
+    out->f.error += most * change.most;
+    out->f.turned += most * csg_taylor_steepest(&change, l->radius);
+    return true;
+}
+
+/* Inside, and about an edge, where one of two faces is the nearer one or the edge is: where a face
+ * is, the other one is no farther out, and not out at all. */
+static bool choose_nearer_face(const csg_smooth_leaf *l, const csg_smooth *const faces[2],
+                               double round, double value, csg_smooth *out)
+{
+    enum { EDGE = 2, WAYS };
+    csg_smooth over_other = csg_smooth_sum(l, faces[0], -1, faces[1]);
+    bool may_be_out[2], possible[WAYS];
+    for (int i = 0; i < 2; i++)
+        may_be_out[i] = !csg_smooth_is_negative(l, faces[i]);
+    possible[0] = !csg_smooth_is_negative(l, &over_other) && !csg_smooth_is_positive(l, faces[1]);
+    possible[1] = !csg_smooth_is_positive(l, &over_other) && !csg_smooth_is_positive(l, faces[0]);
+    possible[EDGE] = may_be_out[0] && may_be_out[1];
+    int way = csg_smooth_choose(l, possible, WAYS);
+    if (way < 0)
+        return false;
+    l->choice->is_creased = true;
+    if (way == EDGE) {
+        for (int i = 0; i < 2; i++)
+            csg_smooth_require(l, 1, faces[i]);
+        return round_of_box(l, faces, 2, round, out) || round_of_fan(l, faces, 2, value, out);
+    }
+    csg_smooth_require(l, way ? -1 : 1, &over_other);
+    if (may_be_out[1 - way])
+        csg_smooth_require(l, -1, faces[1 - way]);
+    return round_of_box(l, &faces[way], 1, round, out);
+}
+
+/* Of an axis' two planes: the distance out of the box from the one that is nearer at the ball's
+ * centre, and from the other one. */
+typedef struct box_axis {
+    csg_smooth over, other;
+    bool is_nearer; /* all over the ball */
+    bool is_inside; /* it is between both all over the ball */
+} box_axis;
+
+static box_axis find_axis(const csg_smooth_leaf *l, double half, const csg_smooth *p)
+{
+    double side = p->f.value < 0 ? -1 : 1;
+    box_axis a;
+    a.over = csg_smooth_line(l, -half, side, p);
+    a.other = csg_smooth_line(l, -half, -side, p);
+    a.is_nearer = csg_smooth_is_positive(l, p) || csg_smooth_is_negative(l, p);
+    a.is_inside = csg_smooth_is_negative(l, &a.over) && csg_smooth_is_negative(l, &a.other);
+    return a;
+}
+
+/* Its faces are nowhere in the ball as near as that one. */
+static bool is_behind(const csg_smooth_leaf *l, const box_axis *a, const csg_smooth *face)
+{
+    return a->is_inside && csg_smooth_is_above(l, face, &a->over) &&
+           (a->is_nearer || csg_smooth_is_above(l, face, &a->other));
+}
+
 /* Which coordinates are out is open for one or two of them. Where only the sign matters a face
  * alone stands for the inside, too. */
-static bool choose_of_box(const csg_smooth_leaf *l, const csg_smooth *over, int axes, double round,
+static bool choose_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes, double round,
                           csg_smooth *out)
 {
     enum { OPEN_MOST = 2 };
@@ -76,17 +173,15 @@ static bool choose_of_box(const csg_smooth_leaf *l, const csg_smooth *over, int 
     bool possible[1 << OPEN_MOST];
     int outside = 0, open_count = 0;
     for (int i = 0; i < axes; i++) {
-        if (csg_smooth_is_positive(l, &over[i]))
-            out_there[outside++] = &over[i];
-        else if (csg_smooth_is_negative(l, &over[i]))
+        if (csg_smooth_is_positive(l, &of[i].over))
+            out_there[outside++] = &of[i].over;
+        else if (csg_smooth_is_negative(l, &of[i].over))
             continue;
         else if (open_count == OPEN_MOST)
             return false;
         else
-            open[open_count++] = &over[i];
+            open[open_count++] = &of[i].over;
     }
-    if (!outside && !l->choice->signs)
-        return false;
     for (int i = 0; i < 1 << open_count; i++)
         possible[i] = i || outside;
     int way = csg_smooth_choose(l, possible, 1 << open_count);
@@ -104,36 +199,55 @@ static bool choose_of_box(const csg_smooth_leaf *l, const csg_smooth *over, int 
 }
 
 /* A face where one coordinate is farther out than the others, which are inside; an edge or a corner
- * where two or three are out. */
+ * where two or three are out; else, if there is a choice, what may be either. value: the box's at
+ * the ball's centre. */
+static bool find_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes, int widest,
+                        double round, double value, csg_smooth *out)
+{
+    const csg_smooth *out_there[3], *near[3];
+    int outside = 0, inside = 0, near_count = 0;
+    bool is_told = true; /* which of an axis' faces it is, where one is near */
+    for (int i = 0; i < axes; i++) {
+        inside += of[i].is_inside;
+        if (!of[i].is_inside && !of[i].is_nearer)
+            return false;
+        if (csg_smooth_is_positive(l, &of[i].over))
+            out_there[outside++] = &of[i].over;
+        if (i != widest && is_behind(l, &of[i], &of[widest].over))
+            continue;
+        near[near_count++] = &of[i].over;
+        is_told = is_told && of[i].is_nearer;
+    }
+    if (near_count == 1 && is_told)
+        return round_of_box(l, near, 1, round, out);
+    if (outside >= 2 && outside + inside == axes)
+        return round_of_box(l, out_there, outside, round, out);
+    if (!l->choice)
+        return false;
+    if (outside || l->choice->signs)
+        return choose_of_box(l, of, axes, round, out);
+    if (!is_told)
+        return false;
+    return near_count == 2 ? choose_nearer_face(l, near, round, value, out)
+                           : round_of_fan(l, near, near_count, value, out);
+}
+
 bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round, int axes,
                        csg_smooth *out)
 {
-    csg_smooth over[3];
-    const csg_smooth *out_there[3];
-    int outside = 0, inside = 0, widest = 0;
+    box_axis of[3];
+    double square = 0, farthest = -INFINITY;
+    int widest = 0;
     for (int i = 0; i < axes; i++) {
-        double side = l->p[i].f.value < 0 ? -1 : 1;
-        csg_smooth other = csg_smooth_line(l, -(double)half[i], -side, &l->p[i]);
-        over[i] = csg_smooth_line(l, -(double)half[i], side, &l->p[i]);
-        if (over[i].f.value > over[widest].f.value)
+        of[i] = find_axis(l, (double)half[i], &l->p[i]);
+        double over = of[i].over.f.value;
+        square += over > 0 ? over * over : 0;
+        if (over > farthest) {
+            farthest = over;
             widest = i;
-        if (csg_smooth_is_negative(l, &over[i]) && csg_smooth_is_negative(l, &other))
-            inside++;
-        else if (!csg_smooth_is_positive(l, &l->p[i]) && !csg_smooth_is_negative(l, &l->p[i]))
-            return false; /* either face may be the nearer one */
-        else if (csg_smooth_is_positive(l, &over[i]))
-            out_there[outside++] = &over[i];
+        }
     }
-    bool is_face = inside >= axes - 1;
-    for (int i = 0; i < axes && is_face; i++)
-        is_face = i == widest || csg_smooth_is_above(l, &over[widest], &over[i]);
-    is_face = is_face && (csg_smooth_is_positive(l, &l->p[widest]) ||
-                          csg_smooth_is_negative(l, &l->p[widest]));
-    if (is_face) {
-        *out = csg_smooth_line(l, round, -1, &over[widest]);
-        return true;
-    }
-    if (outside >= 2 && outside + inside == axes)
-        return round_of_box(l, out_there, outside, round, out);
-    return l->choice && choose_of_box(l, over, axes, round, out);
+    double value = round - (square > 0 ? sqrt(square) : farthest);
+    return find_of_box(l, of, axes, widest, round, value, out) ||
+           csg_smooth_steepest(l, value, out);
 }

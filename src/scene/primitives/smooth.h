@@ -22,10 +22,12 @@ enum { CSG_SMOOTH_WAYS = 4, CSG_SMOOTH_CONDITIONS = 3 };
  * `signs` says that this is enough has its sign, wherever no condition is negative; and everywhere
  * one of the ways is. */
 typedef struct csg_smooth_choice {
-    bool signs;   /* inside and outside matter alone, and what is inside is so in the end */
-    bool at_zero; /* inside and outside of the primitive itself matter alone */
-    int way;      /* which one is asked for */
-    int ways;     /* out: how many there are */
+    bool signs;      /* inside and outside matter alone, and what is inside is so in the end */
+    bool at_zero;    /* inside and outside of the primitive itself matter alone */
+    int way;         /* which one is asked for */
+    int ways;        /* out: how many there are */
+    bool is_creased; /* out: the field's gradient may jump in the ball, from one of them to another
+                      */
     csg_taylor conditions[CSG_SMOOTH_CONDITIONS];
     int condition_count;
 } csg_smooth_choice;
@@ -75,6 +77,12 @@ static inline csg_smooth csg_smooth_line(const csg_smooth_leaf *l, double by, do
 /* The length of the vector of these. False: it may be 0 in the ball. */
 bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int count,
                      csg_smooth *out);
+
+/* A function of own coordinates that has this value at the ball's centre and is nowhere steeper
+ * than 1: no more is known of it. That is enough for a blend in which it has little part. Only of
+ * leaves that have a choice. False: derivatives are asked for, or signs, of which this tells none
+ * that is of use. */
+bool csg_smooth_steepest(const csg_smooth_leaf *l, double value, csg_smooth *out);
 
 static inline bool csg_smooth_is_positive(const csg_smooth_leaf *l, const csg_smooth *a)
 {
