@@ -25,6 +25,18 @@ static uint64_t process_limit_bytes(void)
                                                                                   : 0;
 }
 
+csgm_status csg_context_needs_memory(csgm_context *context, uint64_t needed_bytes)
+{
+    static const uint64_t MIB = 1 << 20;
+    csg_diag_plain(&context->diags, CSG_DIAG_OUT_OF_MEMORY, NULL,
+                   "raise the limit with --max-memory; a scene takes less with --quality draft, "
+                   "and equal cells (-r) go to one PLY, STL or GLB file while they are made",
+                   "at least %llu MiB of memory are needed, more than the limit of %llu MiB",
+                   (unsigned long long)((needed_bytes + MIB - 1) / MIB),
+                   (unsigned long long)(context->memory.limit_bytes / MIB));
+    return CSGM_ERR_MEMORY;
+}
+
 csgm_status csg_context_no_memory(csgm_context *context)
 {
     csg_memory *memory = &context->memory;

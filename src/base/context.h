@@ -54,5 +54,7 @@ static inline void csg_context_tell_file(const csgm_context *context, const char
  * time to end (csg_memory_end_when), says that instead and returns CSGM_ERR_LIMIT, or
  * CSGM_CANCELLED, and memory is to be had again. */
 csgm_status csg_context_no_memory(csgm_context *context);
+/* The same before it is refused: so many bytes are certain to be needed, more than the limit. */
+csgm_status csg_context_needs_memory(csgm_context *context, uint64_t needed_bytes);
 
 #endif

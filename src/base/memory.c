@@ -218,6 +218,14 @@ static bool add_block(csg_arena *arena, size_t payload)
     return true;
 }
 
+size_t csg_arena_bytes(const csg_arena *arena)
+{
+    size_t bytes = arena->spare ? arena->spare->size_bytes : 0;
+    for (const csg_arena_block *block = arena->blocks; block; block = block->next)
+        bytes += block->size_bytes;
+    return bytes;
+}
+
 void *csg_arena_alloc(csg_arena *arena, size_t size_bytes)
 {
     if (size_bytes > SIZE_MAX / 2)

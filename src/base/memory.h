@@ -63,6 +63,9 @@ typedef struct csg_arena_mark {
 void csg_arena_init(csg_arena *arena, csg_memory *memory);
 void csg_arena_reset(csg_arena *arena); /* gives every block back; the arena stays usable */
 
+/* What it has taken. */
+size_t csg_arena_bytes(const csg_arena *arena);
+
 /* Not zeroed. size_bytes may be 0. Aligned to 16. */
 void *csg_arena_alloc(csg_arena *arena, size_t size_bytes);
 void *csg_arena_calloc(csg_arena *arena, size_t count,

@@ -126,6 +126,23 @@ class Ranks(cli.CliTest):
                                                          ("colours", "blend.txt", "ply", (3,), *draft)):
             self.compare(name, scene, extension, counts, *map(str, options))
 
+    def test_tiles(self):
+        """Cells that follow the shape where the limit makes each rank thin them out in tiles: another file than with all memory."""
+        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
+        cross = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
+        for scene, limit, counts, *options in (("lattice.txt", "16M", (2, 4), "-e", "0.05"), (cross, "8M", (3, 7))):
+            self.compare(f"tiles of {scene}", scene, "ply", counts, "--max-memory", limit, *options)
+            self.assert_status(self.run_in(scene, "-o", "tiles.ply", "--max-memory", limit, *options), 0)
+            self.assert_status(self.run_in(scene, "-o", "whole.ply", *options), 0)
+            self.assertFalse(self.read("tiles.ply") == self.read("whole.ply"), "the limit asks for no tiles")
+
+    def test_other_limits(self):
+        """Which tiles there are depends on the limit: ranks with another one are told so before any work."""
+        self.write("a.txt", cli.BALL)
+        result = self.run_job((2, PROGRAM, "a.txt", "-o", "a.ply"), (1, PROGRAM, "a.txt", "-o", "a.ply", "--max-memory", "64M"))
+        self.assert_one_message(result, "rank 2 has another scene or other options")
+        self.assert_files("a.txt")
+
     def test_warned_once(self):
         """What is said of a mesh that all ranks have, the first says."""
         self.write("half.txt", "sphere(r = 1);\n")

@@ -391,7 +391,7 @@ static csgm_status exchange_bricks(const round_of_division *r, size_t items, csg
 static bool join_children(round_of_division *r, size_t items)
 {
     csg_bricks *b = r->bricks;
-    size_t total = 0;
+    size_t total = 0, first = b->count;
     for (size_t i = 0; i < items; i++)
         total += r->segments[i].count;
     if (!csg_memory_reserve(&b->context->memory, (void **)&b->items, &b->capacity,
@@ -413,7 +413,7 @@ static bool join_children(round_of_division *r, size_t items)
     }
     for (uint32_t i = 0; i < b->worker_count; i++)
         b->workers[i].count = 0;
-    return true;
+    return !b->options.joined || b->options.joined(b->options.judge_user, b, first);
 }
 
 static csgm_status divide_all(csg_bricks *b, const uint32_t *queue, size_t count)

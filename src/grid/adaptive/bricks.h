@@ -60,6 +60,10 @@ typedef struct csg_bricks csg_bricks;
 typedef bool csg_brick_judge(void *user, uint32_t worker, const csg_bricks *bricks,
                              csg_brick *brick, const float *f);
 
+/* Bricks from `first` on are in their places, with their neighbours; those that come later have
+ * higher numbers. False: out of memory. The calling thread. */
+typedef bool csg_bricks_joined(void *user, csg_bricks *bricks, size_t first);
+
 /* What the judge has found of a brick that others have to know (base/rank_loop.h): beyond the
  * brick's own members, `judged`. False: out of memory. The calling thread. */
 typedef bool csg_brick_tell(void *user, const csg_brick *brick, csg_records *records);
@@ -70,7 +74,8 @@ typedef struct csg_bricks_options {
     uint32_t coarse; /* the level of the largest leaves */
     size_t most;     /* bricks: beyond them refinement ends */
     csg_brick_judge *judge;
-    csg_brick_tell *tell; /* NULL where the judge keeps nothing */
+    csg_bricks_joined *joined; /* these three are NULL where the judge keeps nothing */
+    csg_brick_tell *tell;
     csg_brick_hear *hear;
     void *judge_user;
     void (*progress)(void *user, double fraction); /* calling thread; may be NULL */

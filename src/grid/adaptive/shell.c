@@ -184,7 +184,7 @@ csg_shell_cell csg_shell_cell_of(const csg_shell *s, unsigned i, unsigned j, uns
  */
 
 /* Whether no brick with a lower number touches in the brick's lines and planes named by steps. */
-static bool is_lowest(const csg_shell *s, const int step[3])
+static bool is_lowest(const uint32_t around[CSG_BRICKS_AROUND], const int step[3])
 {
     for (int part = 1; part < 8; part++) {
         int d = CENTER, place = 1;
@@ -195,7 +195,7 @@ static bool is_lowest(const csg_shell *s, const int step[3])
             used = used && step[axis] != 0;
             d += step[axis] * place;
         }
-        if (used && s->around[d] != CSG_BRICK_NONE && s->around[d] < s->number)
+        if (used && around[d] != CSG_BRICK_NONE && around[d] < around[CENTER])
             return false;
     }
     return true;
@@ -206,16 +206,16 @@ static int border_step(unsigned at)
     return at == 0 ? -1 : at == E ? 1 : 0;
 }
 
-bool csg_shell_owns_edge(const csg_shell *s, int axis, const unsigned low[3])
+bool csg_brick_owns_edge(const uint32_t around[CSG_BRICKS_AROUND], int axis, const unsigned low[3])
 {
     int step[3] = {border_step(low[0]), border_step(low[1]), border_step(low[2])};
     step[axis] = 0;
-    return is_lowest(s, step);
+    return is_lowest(around, step);
 }
 
-bool csg_shell_owns_face(const csg_shell *s, int axis, const unsigned low[3])
+bool csg_brick_owns_face(const uint32_t around[CSG_BRICKS_AROUND], int axis, const unsigned low[3])
 {
     int step[3] = {0, 0, 0};
     step[axis] = border_step(low[axis]);
-    return is_lowest(s, step);
+    return is_lowest(around, step);
 }

@@ -40,9 +40,10 @@ typedef struct csg_shell_cell {
 
 csg_shell_cell csg_shell_cell_of(const csg_shell *shell, unsigned i, unsigned j, unsigned k);
 
-/* Whether the brick has an edge, or a face, for its own among those of the same level that touch in
- * it: the lowest number has. low: the edge's lower point, the face's lowest, in cells. */
-bool csg_shell_owns_edge(const csg_shell *shell, int axis, const unsigned low[3]);
-bool csg_shell_owns_face(const csg_shell *shell, int axis, const unsigned low[3]);
+/* Whether a brick has an edge, or a face, for its own among those of the same level that touch in
+ * it: the lowest number has, so bricks that are made later take none away, and add none. around: as
+ * csg_bricks_around has it. low: the edge's lower point, the face's lowest, in cells. */
+bool csg_brick_owns_edge(const uint32_t around[CSG_BRICKS_AROUND], int axis, const unsigned low[3]);
+bool csg_brick_owns_face(const uint32_t around[CSG_BRICKS_AROUND], int axis, const unsigned low[3]);
 
 #endif

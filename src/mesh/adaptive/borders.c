@@ -135,17 +135,25 @@ csgm_status csg_borders_check_simple(csg_extraction *x, bool *any)
     return status;
 }
 
-/* Bricks whose borders are looked at together: each takes a kilobyte with what is around it. */
-enum { NEAR_TOGETHER = 1 << 15 };
+/* Bricks whose borders are looked at together: each takes a kilobyte with what is around it. Where
+ * the memory is narrow they are fewer, but not so few that what is around them is most of it. Ranks
+ * have the same limit. */
+static size_t most_together(const csg_memory *memory)
+{
+    enum { MOST = 1 << 15, LEAST = 1 << 11, BYTES_EACH = 1024, SHARE = 32 };
+    uint64_t room = memory->limit_bytes / SHARE / BYTES_EACH;
+    return !memory->limit_bytes || room > MOST ? MOST : room < LEAST ? LEAST : (size_t)room;
+}
 
 /* Marks the changed bricks from *first on that are looked at together, and what is around them;
  * *first is then behind them. */
 static void choose_together(const csg_bricks *b, uint8_t *marks, size_t *first)
 {
+    const size_t most = most_together(&b->context->memory);
     size_t count = 0, i;
     for (i = 0; i < b->count; i++)
         marks[i] &= CHANGED;
-    for (i = *first; i < b->count && count < NEAR_TOGETHER; i++)
+    for (i = *first; i < b->count && count < most; i++)
         if (marks[i] & CHANGED && csg_brick_has_leaves(&b->items[i])) {
             csg_cell_loop_mark_around(b, (uint32_t)i, marks);
             marks[i] |= CHOSEN;

@@ -31,7 +31,7 @@ static bool visit_edges(csg_cell_loop *w, uint32_t worker_index, const csg_shell
         const csg_judged_root *root = &judged->roots[i];
         unsigned low[3];
         int axis = csg_slot_place(root->slot, low);
-        if (is_divided(s, axis, low) || !csg_shell_owns_edge(s, axis, low))
+        if (is_divided(s, axis, low) || !csg_brick_owns_edge(s->around, axis, low))
             continue;
         csg_placed_vertex v = {.place = csg_cells_place(w->x->bricks, s->brick, low,
                                                         local_on_edge(axis, root->quarters))};
@@ -120,7 +120,7 @@ static bool is_for(const csg_cell_at_hand *c, int axis, unsigned side, bool pier
     if (!pierced && beyond != CSG_BRICK_NONE &&
         has_several(&c->loop->x->bricks->items[beyond], next))
         return false;
-    return csg_shell_owns_face(s, axis, low);
+    return csg_brick_owns_face(s->around, axis, low);
 }
 
 /* Whether a side of a polygon goes from one edge of the cell to another that nothing finer divides:

@@ -601,7 +601,7 @@ static bool keep(const brick_work *w, uint8_t cells)
 {
     csg_judge_room *room = w->room;
     csg_judged_root roots[CSG_JUDGED_MOST_ROOTS];
-    csg_judged_crease creases[CSG_SIDE_PARTS * CSG_MOST_FACES];
+    csg_judged_crease creases[CSG_JUDGED_MOST_CREASES];
     csg_judged_apex apexes[CSG_JUDGED_MOST_APEXES];
     csg_judged judged = {.roots = roots, .creases = creases, .apexes = apexes};
     if (!cells)
@@ -610,7 +610,7 @@ static bool keep(const brick_work *w, uint8_t cells)
     judged.crease_count = list_creases(room, creases);
     judged.apex_count = list_apexes(room, cells, apexes);
     judged.pierced = &room->pierced;
-    w->brick->judged = csg_judged_keep(&room->kept, &judged);
+    w->brick->judged = csg_judged_keep(&room->found, &judged);
     return w->brick->judged != NULL;
 }
 
@@ -659,6 +659,15 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     return !w.out_of_memory && keep(&w, brick->crossed & (uint8_t)~brick->wanted);
 }
 
+bool csg_judge_joined(void *user, csg_bricks *bricks, size_t first)
+{
+    csg_judge *judge = user;
+    bool done = csg_judged_keep_own(&judge->kept, bricks, first);
+    for (uint32_t i = 0; i < bricks->worker_count && done; i++)
+        csg_arena_reset(&judge->rooms[i].found);
+    return done;
+}
+
 /* ---- other ranks -------------------------------------------------------------------------------
  */
 
@@ -671,5 +680,5 @@ bool csg_judge_tell(void *user, const csg_brick *brick, csg_records *records)
 bool csg_judge_hear(void *user, csg_brick *brick, csg_record_reader *reader, size_t item)
 {
     const csg_judge *judge = user;
-    return csg_judged_unpack(&judge->rooms[0].kept, reader, item, &brick->judged);
+    return csg_judged_unpack(&judge->rooms[0].found, reader, item, &brick->judged);
 }

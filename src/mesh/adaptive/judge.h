@@ -32,7 +32,7 @@ typedef struct csg_judge_room {
     uint8_t first_piece[CSG_BRICK_CELLS], end_piece[CSG_BRICK_CELLS];
     csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
     uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
-    csg_arena kept;   /* what the judge keeps of bricks */
+    csg_arena found;  /* what the judge found of bricks that are not joined yet */
     csg_vec3 *unsure; /* places of the surface away from the brick's own triangles, and so near to a
                          side of it that the next brick's may be there (unsure.h) */
     size_t unsure_count, unsure_capacity;
@@ -44,6 +44,7 @@ typedef struct csg_judge_room {
 typedef struct csg_judge {
     csg_memory *memory;
     csg_judge_room *rooms; /* one per worker */
+    csg_arena kept;        /* what was found of bricks, each thing once */
     double tolerance;      /* how far triangles may be from the surface */
     double bulge;          /* how far sides of polygons may be, before they get a vertex between */
     bool sharp;            /* look for creases */
@@ -55,6 +56,8 @@ typedef struct csg_judge {
 /* A csg_brick_judge; user: a csg_judge. */
 bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *bricks, csg_brick *brick,
                      const float *f);
+/* A csg_bricks_joined; user: the same. */
+bool csg_judge_joined(void *user, csg_bricks *bricks, size_t first);
 
 /* A csg_brick_tell and a csg_brick_hear; user: the same. */
 bool csg_judge_tell(void *user, const csg_brick *brick, csg_records *records);

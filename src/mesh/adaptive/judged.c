@@ -5,20 +5,9 @@
 
 #include <string.h>
 
-static const csg_pierced NOTHING_PIERCED = {.edges = 0};
+#include "grid/adaptive/shell.h"
 
-/* False: out of memory. */
-static bool copy(csg_arena *arena, const void *items, size_t bytes, const void **out)
-{
-    *out = NULL;
-    if (!bytes)
-        return true;
-    void *own = csg_arena_alloc(arena, bytes);
-    if (own)
-        memcpy(own, items, bytes);
-    *out = own;
-    return own != NULL;
-}
+static const csg_pierced NOTHING_PIERCED = {.edges = 0};
 
 bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_crease *out)
 {
@@ -31,22 +20,72 @@ bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_c
     return found->is_there;
 }
 
+/* Copies what an array has to *end, which is then behind it. */
+static const void *put(uint8_t **end, const void *items, size_t bytes)
+{
+    const void *own = bytes ? *end : NULL;
+    if (bytes)
+        memcpy(*end, items, bytes);
+    *end += bytes;
+    return own;
+}
+
 const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged)
 {
-    csg_judged *own = csg_arena_alloc(arena, sizeof *own);
+    const bool has_pierced = judged->pierced && judged->pierced->edges;
+    const size_t pierced = has_pierced ? sizeof *judged->pierced : 0;
+    const size_t roots = judged->root_count * sizeof *judged->roots;
+    const size_t creases = judged->crease_count * sizeof *judged->creases;
+    const size_t apexes = judged->apex_count * sizeof *judged->apexes;
+    csg_judged *own = csg_arena_alloc(arena, sizeof *own + pierced + roots + creases + apexes);
     if (!own)
         return NULL;
     *own = *judged;
-    bool done = copy(arena, judged->roots, judged->root_count * sizeof *judged->roots,
-                     (const void **)&own->roots) &&
-                copy(arena, judged->creases, judged->crease_count * sizeof *judged->creases,
-                     (const void **)&own->creases) &&
-                copy(arena, judged->apexes, judged->apex_count * sizeof *judged->apexes,
-                     (const void **)&own->apexes) &&
-                copy(arena, judged->pierced,
-                     judged->pierced && judged->pierced->edges ? sizeof *judged->pierced : 0,
-                     (const void **)&own->pierced);
-    return done ? own : NULL;
+    uint8_t *end = (uint8_t *)(own + 1);
+    own->pierced = put(&end, judged->pierced, pierced); /* first: it is aligned like the struct */
+    own->roots = put(&end, judged->roots, roots);
+    own->creases = put(&end, judged->creases, creases);
+    own->apexes = put(&end, judged->apexes, apexes);
+    return own;
+}
+
+/* Without what other bricks have for their own. NULL: out of memory. */
+static const csg_judged *keep_own(csg_arena *arena, const csg_judged *judged,
+                                  const uint32_t around[CSG_BRICKS_AROUND])
+{
+    csg_judged_root roots[CSG_JUDGED_MOST_ROOTS];
+    csg_judged_crease creases[CSG_JUDGED_MOST_CREASES];
+    csg_judged own = *judged;
+    unsigned low[3];
+    own.roots = roots;
+    own.creases = creases;
+    own.root_count = own.crease_count = 0;
+    for (unsigned i = 0; i < judged->root_count; i++) {
+        int axis = csg_slot_place(judged->roots[i].slot, low);
+        if (csg_brick_owns_edge(around, axis, low))
+            roots[own.root_count++] = judged->roots[i];
+    }
+    for (unsigned i = 0; i < judged->crease_count; i++) {
+        int axis = csg_slot_place(judged->creases[i].slot, low);
+        if (csg_brick_owns_face(around, axis, low))
+            creases[own.crease_count++] = judged->creases[i];
+    }
+    return csg_judged_keep(arena, &own);
+}
+
+bool csg_judged_keep_own(csg_arena *arena, csg_bricks *b, size_t first)
+{
+    for (size_t i = first; i < b->count; i++) {
+        uint32_t around[CSG_BRICKS_AROUND];
+        csg_brick *brick = &b->items[i];
+        if (!brick->judged)
+            continue;
+        csg_bricks_around(b, (uint32_t)i, around);
+        brick->judged = keep_own(arena, brick->judged, around);
+        if (!brick->judged)
+            return false;
+    }
+    return true;
 }
 
 /* What a record has of it, before the arrays. */

@@ -10,6 +10,7 @@
 enum {
     CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS, /* of edges, of faces: csg_brick_slot */
     CSG_JUDGED_MOST_ROOTS = 2 * CSG_BRICK_EDGES,
+    CSG_JUDGED_MOST_CREASES = CSG_SIDE_PARTS * CSG_MOST_FACES,
     CSG_JUDGED_MOST_APEXES = 32
 };
 
@@ -61,6 +62,10 @@ typedef struct csg_judged {
 bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_crease *out);
 /* A copy in an arena. NULL: out of memory. */
 const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged);
+/* Keeps there what bricks from `first` on, and all that there are by now, have for their own: half
+ * of what the judge found on edges and in faces lies on the borders of bricks, and others have it,
+ * too. False: out of memory. */
+bool csg_judged_keep_own(csg_arena *arena, csg_bricks *bricks, size_t first);
 
 /* The same for other ranks (base/rank_loop.h). False: out of memory. */
 bool csg_judged_pack(csg_memory *memory, const csg_judged *judged, csg_records *records);

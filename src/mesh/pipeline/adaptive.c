@@ -117,6 +117,7 @@ static csgm_status create_judge(adaptive *a)
                            .end_distance = (float)fmin(
                                fmax(4 * (double)m->unit / a->lattice.cell_size, 0x1p-10), 0.25)};
     csg_plain_polygons_fill(&a->judge.plain);
+    csg_arena_init(&a->judge.kept, memory);
     a->judge.rooms = csg_memory_alloc(memory, a->workers.count * sizeof(csg_judge_room));
     if (!a->judge.rooms)
         return csg_context_no_memory(a->input.context);
@@ -124,7 +125,7 @@ static csgm_status create_judge(adaptive *a)
     for (uint32_t i = 0; i < a->workers.count; i++) {
         a->judge.rooms[i].scratch = a->workers.each[i].scratch;
         a->judge.rooms[i].scratch_floats = a->workers.scratch_floats;
-        csg_arena_init(&a->judge.rooms[i].kept, memory);
+        csg_arena_init(&a->judge.rooms[i].found, memory);
     }
     return CSGM_OK;
 }
@@ -207,6 +208,7 @@ static csgm_status walk(adaptive *a)
     csg_bricks_options options = {.prune = a->input.options->prune,
                                   .most = MOST_BRICKS,
                                   .judge = a->goal->is_own ? want_nothing : csg_judge_brick,
+                                  .joined = a->goal->is_own ? NULL : csg_judge_joined,
                                   .tell = a->goal->is_own ? NULL : csg_judge_tell,
                                   .hear = a->goal->is_own ? NULL : csg_judge_hear,
                                   .judge_user = &a->judge,
@@ -275,7 +277,7 @@ static void fill_stats(const adaptive *a, csgm_mesh_stats *stats)
 
 static void end_room(csg_judge_room *room, csg_memory *memory)
 {
-    csg_arena_reset(&room->kept);
+    csg_arena_reset(&room->found);
     csg_memory_release(memory, room->unsure, room->unsure_capacity * sizeof *room->unsure);
 }
 
@@ -284,6 +286,7 @@ static void release(adaptive *a)
     a->goal->joined = NULL;
     csg_joined_end(&a->joined);
     csg_bricks_destroy(&a->bricks);
+    csg_arena_reset(&a->judge.kept);
     for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++)
         end_room(&a->judge.rooms[i], &a->input.context->memory);
     csg_memory_release(&a->input.context->memory, a->judge.rooms,
@@ -345,6 +348,17 @@ static csgm_status extract(adaptive *a)
     }
 }
 
+/* What the judge has kept of bricks is for the extraction alone: half of what the lattice takes and
+ * more, which thinning out has better use for. */
+static void forget_findings(adaptive *a)
+{
+    if (a->goal->is_own)
+        return;
+    for (size_t i = 0; i < a->bricks.count; i++)
+        a->bricks.items[i].judged = NULL;
+    csg_arena_reset(&a->judge.kept);
+}
+
 static csgm_status make_mesh(adaptive *a)
 {
     csgm_mesh **mesh = &a->extraction.mesh;
@@ -352,6 +366,8 @@ static csgm_status make_mesh(adaptive *a)
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK && !a->goal->is_own)
         status = extract(a);
+    if (status == CSGM_OK)
+        forget_findings(a);
     if (status == CSGM_OK && (*mesh)->triangle_count)
         status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);
     if (status != CSGM_OK || a->goal->is_own || a->goal->cell_size > 0)

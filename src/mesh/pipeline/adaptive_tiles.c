@@ -15,6 +15,10 @@ enum { BYTES_PER_BRICK = 4096, LEAST_BRICKS = 256 };
 /* Of the limit: what all of it may take, and what a tile may. */
 enum { WHOLE_SHARE = 2, TILE_SHARE = 16 };
 
+/* What a vertex that is left takes when all tiles are there, with its two triangles, at least:
+ * places, neighbours, quadrics, tree and cubes. */
+enum { LEAST_BYTES_PER_VERTEX = 256 };
+
 size_t csg_mesh_tile_bricks(const csg_bricks *b, const csg_mesh_goal *goal, uint64_t limit_bytes)
 {
     uint64_t leaves = 0;
@@ -74,13 +78,46 @@ static csgm_status add_tile(const csg_mesh_input *input, const csg_marching *mar
     return status;
 }
 
+/* Cells of some of the leaves that the surface crosses. */
+static uint64_t crossed_cells(const csg_bricks *b, const uint32_t *leaves, size_t count)
+{
+    uint64_t cells = 0;
+    for (size_t i = 0; i < count; i++) {
+        const csg_brick *brick = &b->items[leaves[i]];
+        cells += (uint64_t)__builtin_popcount((unsigned)(brick->crossed & ~brick->divided));
+    }
+    return cells;
+}
+
+/* Compares what is certain to be needed with the limit, before each tile: the work on those before
+ * would be for nothing. cells: of tiles to come. They have a sample for each vertex; a bead has six
+ * in eight cells, and nothing has fewer. */
+static csgm_status check_room(const csg_extraction *x, const csg_joined *joined, uint64_t cells)
+{
+    const csg_memory *memory = &x->context->memory;
+    const csg_begun_samples *s = &joined->samples;
+    uint64_t spare = s->vertex_capacity - s->vertex_count + s->other_capacity - s->other_count;
+    uint64_t needed = atomic_load(&memory->used_bytes) - spare * sizeof(csg_surface_sample) +
+                      cells / 8 * 6 * sizeof(csg_surface_sample);
+    uint64_t found = csg_arena_bytes(&x->judge->kept); /* is forgotten before what is left begins */
+    uint64_t left = (uint64_t)joined->vertex_count * LEAST_BYTES_PER_VERTEX;
+    needed += left > found ? left - found : 0;
+    return needed <= memory->limit_bytes ? CSGM_OK : csg_context_needs_memory(x->context, needed);
+}
+
 static csgm_status join_tiles(const csg_mesh_input *input, const csg_marching *marching,
                               const csg_mesh_goal *goal, csg_extraction *x, const csg_tiles *tiles)
 {
     CSG_ZONE(x->context, "tiles");
-    csgm_status status = CSGM_OK;
-    for (size_t i = 0; i < tiles->count && status == CSGM_OK; i++)
-        status = add_tile(input, marching, goal, x, tiles, &tiles->items[i]);
+    uint64_t cells = crossed_cells(x->bricks, tiles->leaves, tiles->leaf_count);
+    csgm_status status = check_room(x, goal->joined, cells);
+    for (size_t i = 0; i < tiles->count && status == CSGM_OK; i++) {
+        const csg_tile *tile = &tiles->items[i];
+        status = add_tile(input, marching, goal, x, tiles, tile);
+        cells -= crossed_cells(x->bricks, tiles->leaves + tile->first, tile->count);
+        if (status == CSGM_OK)
+            status = check_room(x, goal->joined, cells);
+    }
     if (status == CSGM_OK)
         status = csg_joined_write(goal->joined, &x->mesh);
     if (status == CSGM_OK)

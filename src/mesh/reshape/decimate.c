@@ -258,10 +258,8 @@ static bool take_arrays(csg_decimation *d)
     d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
     d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
     d->state = csg_memory_alloc(memory, vertices);
-    d->sample_capacity =
-        d->begun ? d->begun->vertex_count + d->begun->other_count : vertices + triangles;
-    d->sample_capacity += (d->missed ? d->missed->count : 0) + 1;
-    d->samples = csg_memory_alloc(memory, d->sample_capacity * sizeof *d->samples);
+    size_t samples = (d->begun ? 0 : vertices + triangles) + (d->missed ? d->missed->count : 0) + 1;
+    bool done = csg_decimation_hold_samples(d, samples);
     d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
     d->queue = csg_memory_alloc(memory, sizeof *d->queue);
     d->room = csg_memory_alloc(memory, sizeof *d->room);
@@ -271,7 +269,7 @@ static bool take_arrays(csg_decimation *d)
         memset(d->room, 0, sizeof *d->room);
     if (d->version)
         memset(d->version, 0, vertices * sizeof *d->version);
-    return d->quadrics && d->version && d->state && d->samples && d->first_sample && d->queue &&
+    return done && d->quadrics && d->version && d->state && d->first_sample && d->queue &&
            d->room && keep_looks(d);
 }
 

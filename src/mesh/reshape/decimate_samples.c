@@ -160,6 +160,24 @@ void csg_begun_samples_release(csg_begun_samples *s, csg_memory *memory)
     s->vertex_count = s->vertex_capacity = s->other_count = s->other_capacity = 0;
 }
 
+bool csg_decimation_hold_samples(csg_decimation *d, size_t needed)
+{
+    csg_begun_samples *begun = d->begun;
+    if (!begun)
+        return csg_memory_reserve(d->remesh->memory, (void **)&d->samples, &d->sample_capacity,
+                                  needed, sizeof *d->samples);
+    needed += begun->vertex_count + begun->other_count;
+    if (!csg_memory_reserve(d->remesh->memory, (void **)&begun->of_vertices,
+                            &begun->vertex_capacity, needed, sizeof *d->samples))
+        return false;
+    d->samples = begun->of_vertices;
+    d->sample_capacity = begun->vertex_capacity;
+    begun->of_vertices = NULL;
+    begun->vertex_capacity = 0;
+    return true;
+}
+
+/* The samples may be the next ones of d->samples themselves. */
 static void take(csg_decimation *d, const csg_surface_sample *samples, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -173,7 +191,7 @@ static void take(csg_decimation *d, const csg_surface_sample *samples, size_t co
 void csg_decimation_take_samples(csg_decimation *d)
 {
     memset(d->first_sample, 0xFF, d->remesh->corners.triangle_count * sizeof *d->first_sample);
-    take(d, d->begun->of_vertices, d->begun->vertex_count);
+    take(d, d->samples, d->begun->vertex_count);
     d->vertex_samples = d->sample_count;
     take(d, d->begun->others, d->begun->other_count);
     csg_begun_samples_release(d->begun, d->remesh->memory);

@@ -114,6 +114,9 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
     return d->region_of[vertex] == d->region;
 }
 
+/* Room for so many samples, and for those that the mesh has begun with: these stay where they are,
+ * since there may be no room for them twice. False: out of memory. */
+bool csg_decimation_hold_samples(csg_decimation *d, size_t needed);
 /* normals: the mean of the triangles at each vertex. */
 void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
 /* Those that the mesh has begun with. */
