@@ -132,11 +132,15 @@ enum {
 enum { CSG_OPERATOR_N, CSG_OPERATOR_SUPPORT, CSG_OPERATOR_PARAMETERS };
 /* Of a fillet, behind those of an operator: whether angles in its own frame are others than in the
  * scene's (it is scaled unequally), and then the rows of the matrix that takes gradients into that
- * frame. How far its operands reach beyond its planes comes next. */
+ * frame; how many planes it had before it was pruned, and whether some of its operands are apart. A
+ * row for each operand comes next: how far it reaches beyond each plane, its number, how many
+ * others are apart from it, and theirs. */
 enum {
     CSG_FILLET_IS_SKEWED = CSG_OPERATOR_PARAMETERS,
     CSG_FILLET_TO_OWN,
-    CSG_FILLET_REACHES = CSG_FILLET_TO_OWN + 9
+    CSG_FILLET_PLANES_ONCE = CSG_FILLET_TO_OWN + 9,
+    CSG_FILLET_HAS_APART,
+    CSG_FILLET_REACHES
 };
 
 /* One operation of an expression field over slots of floats, angles in radians. `out` is neither
@@ -184,6 +188,12 @@ typedef struct csg_tape {
     float waver; /* how far the field strays from one that has the constant `lipschitz` */
     bool turns;  /* some value in the whole tape depends on its operands' gradients */
 } csg_tape;
+
+/* Some operands of the fillet do not meet: where two blend with a third one there is a crease. */
+static inline bool csg_fillet_has_apart(const csg_tape *tape, const csg_tape_node *fillet)
+{
+    return tape->parameters[fillet->parameters + CSG_FILLET_HAS_APART] > 0;
+}
 
 /* Of a CSG_OP_SHAPE. */
 static inline const csg_shape *csg_tape_shape(const csg_tape *tape, const csg_tape_node *node)

@@ -99,6 +99,12 @@ static double fillet_inside(const void *user, const csg_fillet_operand *operands
     return least;
 }
 
+static bool fillet_apart(const void *user, const csg_fillet_operand *a, const csg_fillet_operand *b)
+{
+    const fillet_end *end = user;
+    return csg_fillet_planes_are_apart(&end->planes, a->index, b->index);
+}
+
 /* Of operands whose values are in w->values, with their signs; p: the point, in the node's own
  * frame. */
 static csg_sample unite_fillet(const csg_reference_work *w, const csgm_scene *scene,
@@ -107,7 +113,9 @@ static csg_sample unite_fillet(const csg_reference_work *w, const csgm_scene *sc
 {
     csg_fillet_operand reach[CSG_FILLET_MOST];
     fillet_end end = {csg_scene_fillet_planes(scene, node), p};
-    csg_fillet_ends ends = {end.planes.count ? fillet_inside : NULL, &end};
+    csg_fillet_ends ends = {.inside = end.planes.count ? fillet_inside : NULL,
+                            .user = &end,
+                            .apart = end.planes.apart ? fillet_apart : NULL};
     uint32_t count = 0;
     double r = csg_scene_parameters(scene, node)[CSG_FILLET_N];
     size_t top = csg_largest_of(w->values, node->child_count);
@@ -324,17 +332,27 @@ csg_sample csg_reference_below(csg_reference_room *room, const csgm_scene *scene
     return room->samples[node];
 }
 
-/* Whether some value depends on gradients: a fillet's, or a rule's with debulge. */
+uint64_t csg_reference_cost(const csgm_scene *scene, const csg_node *node)
+{
+    enum { SHAPE = 16 };
+    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE)
+        return 1 + scene->formulas[node->payload].count / 4;
+    return node->kind == CSG_NODE_SHAPE ? SHAPE : 1;
+}
+
+bool csg_reference_turns(const csgm_scene *scene, const csg_node *node)
+{
+    const csg_rule *rule =
+        csg_node_is_operator((csg_node_kind)node->kind) ? csg_scene_rule(scene, node) : NULL;
+    return csg_node_is_fillet(node) ||
+           (rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0);
+}
+
 static bool turns(const csgm_scene *scene)
 {
     bool any = false;
-    for (size_t i = 0; i < scene->node_count && !any; i++) {
-        const csg_node *node = &scene->nodes[i];
-        const csg_rule *rule =
-            csg_node_is_operator((csg_node_kind)node->kind) ? csg_scene_rule(scene, node) : NULL;
-        any = csg_node_is_fillet(node) ||
-              (rule && rule->kind == CSG_BLEND_SCALE_SET && rule->parameters[3] > 0);
-    }
+    for (size_t i = 0; i < scene->node_count && !any; i++)
+        any = csg_reference_turns(scene, &scene->nodes[i]);
     return any;
 }
 

@@ -60,6 +60,12 @@ csg_vec3 csg_reference_true_gradient(csg_reference_room *room, const csgm_scene 
                                      csg_node_id first, csg_node_id node, csg_vec3 p,
                                      csg_sample here);
 
+/* What it takes to ask a node alone, in nodes of which one is a box. */
+uint64_t csg_reference_cost(const csgm_scene *scene, const csg_node *node);
+
+/* Whether its value depends on gradients: a fillet's, or a rule's with debulge. */
+bool csg_reference_turns(const csgm_scene *scene, const csg_node *node);
+
 /* Where a node at p asks its children. */
 csg_vec3 csg_reference_inner_point(const csgm_scene *scene, const csg_node *node, csg_vec3 p);
 

@@ -85,7 +85,17 @@ csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_nod
         planes.ends = scene->ends + (size_t)v[CSG_FILLET_FIRST_NORMAL];
         planes.reaches = scene->reaches + (size_t)v[CSG_FILLET_FIRST_REACH];
     }
+    if (v[CSG_FILLET_APART] > 0 && scene->apart)
+        planes.apart = scene->apart + ((size_t)v[CSG_FILLET_APART] - 1);
     return planes;
+}
+
+bool csg_fillet_planes_are_apart(const csg_fillet_planes *planes, uint32_t a, uint32_t b)
+{
+    for (uint32_t i = planes->apart[a]; i < planes->apart[a + 1]; i++)
+        if (planes->apart[i] == b)
+            return true;
+    return false;
 }
 
 double csg_fillet_towards(const csg_fillet_end *end, csg_vec3 p, csg_vec3 *away)

@@ -83,13 +83,15 @@ typedef struct csg_fillet_end {
 
 /* Parameters of an operator that takes fields, and of a sharp one with soft operands only. */
 enum { CSG_OPERATOR_RULE, CSG_OPERATOR_RANGE, CSG_OPERATOR_LAMBDA, CSG_OPERATOR_FIELD_PARAMETERS };
-/* Of a fillet: n, and of a union its planes (operators/fillet_planes.h) among the normals and
- * reaches of the scene. */
+/* Of a fillet: n, of a union its planes (operators/fillet_planes.h) among the normals and reaches
+ * of the scene, and which of its solids do not meet (operators/fillet_apart.h). */
 enum {
     CSG_FILLET_N,
     CSG_FILLET_FIRST_NORMAL,
     CSG_FILLET_FIRST_REACH,
     CSG_FILLET_PLANES,
+    CSG_FILLET_APART,    /* 1 + where among `apart` of the scene it begins; 0: all may meet */
+    CSG_FILLET_APART_BY, /* no two of the solids meet: how far they are apart, roughly; else 0 */
     CSG_FILLET_PARAMETERS
 };
 /* Of a soft node. */
@@ -133,6 +135,7 @@ struct csgm_scene {
     csg_rule *rules;      /* csg_blend.n of a rule is an index into them */
     csg_fillet_end *ends; /* once sealed: of all fillets */
     double *reaches;      /* once sealed: how far each operand reaches towards them */
+    uint32_t *apart;      /* once sealed: of each fillet that has such, operands that do not meet */
     double *softness; /* once sealed: lambda of each soft node, else 0; NULL where none is soft */
     size_t node_count, child_count, parameter_count, transform_count, look_count, formula_count,
         step_count, shape_count, warp_count, rule_count;
@@ -170,7 +173,11 @@ typedef struct csg_fillet_planes {
     const csg_fillet_end *ends;
     const double *reaches; /* INFINITY: there is no end, or none is known */
     size_t count;
+    /* NULL: all of them may meet. Else operand k does not meet those whose numbers are from
+     * apart[apart[k]] to before apart[apart[k + 1]]. */
+    const uint32_t *apart;
 } csg_fillet_planes;
+bool csg_fillet_planes_are_apart(const csg_fillet_planes *planes, uint32_t a, uint32_t b);
 csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node);
 /* How far p lies along the plane's normal, or off the axis; *away: the direction in which it grows.
  */

@@ -35,6 +35,8 @@ SCENES = {
             2, None),
     "crossing cylinders": ("cylinder(h = 40, r = 3, center = true); rotate([0, 60, 0]) cylinder(h = 40, r = 3, center = true);", 2,
                            None),
+    "balls apart": ("sphere(5); translate([12, 0, 0]) sphere(5);", 3, 0),
+    "pins close together": ("cube([30, 20, 3]); for (x = [9, 18.5]) translate([x, 10, 0]) cylinder(h = 20, r = 4.5);", 2, None),
     "sloping": ("cube([40, 20, 5]); rotate([0, -40, 0]) translate([4, 0, -3]) cube([6, 20, 30]);", 2, None),
 }
 

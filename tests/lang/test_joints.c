@@ -76,7 +76,11 @@ static void filled_gaps_are_told(void **state)
     assert_non_null(strstr(b.text, "fills the gap of 2 between its solids around z = 6"));
     assert_non_null(strstr(b.text, "blend = fillet(8) keeps gaps open"));
     check("union(blend = fillet(8)) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
-          0);
+          MISSES);
+    assert_non_null(strstr(b.text, "its solids are 2 apart"));
+    assert_non_null(strstr(b.text, "blend = round(8) joins what does not meet"));
+    check("union(blend = fillet(4)) { sphere(5); translate([11, 0, 0]) sphere(5); }", MISSES);
+    check("union(blend = fillet(4)) { sphere(5); translate([9, 0, 0]) sphere(5); }", 0);
     check("union(blend = 3) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }", 0);
     /* faces that are apart by rounding */
     check("union(blend = 1) for (i = [0 : 9]) translate([i * 10.1, i, 0]) cube([10.1, 8, 5 + i]);",

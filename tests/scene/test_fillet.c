@@ -30,7 +30,7 @@ static void check_golden(const row *r)
     assert_int_equal(split_numbers(r->fields[3], gradients), 3 * count);
     assert_int_equal(split_numbers(r->fields[5], shares), count);
     csg_fillet_operand operands[CSG_FILLET_MOST];
-    const csg_fillet_ends none = {NULL, NULL};
+    const csg_fillet_ends none = {0};
     assert_int_equal(arrange(values, gradients, count, operands), count);
     csg_fillet_choice best = csg_fillet_solve(number(r->fields[1]), operands, count, &none);
     test_near(operands[0].f + best.excess, number(r->fields[4]), 2e-15);
@@ -64,7 +64,7 @@ static uint32_t random_operands(csg_random *random, double *values, double *grad
 static void test_order(void **state)
 {
     csg_random random = {71};
-    const csg_fillet_ends none = {NULL, NULL};
+    const csg_fillet_ends none = {0};
     for (int i = 0; i < 4000; i++) {
         double values[2 * MOST], gradients[6 * MOST], r = csg_random_uniform(&random, 0.1, 0.6);
         uint32_t count = random_operands(&random, values, gradients);
@@ -106,7 +106,7 @@ static void test_order(void **state)
 static void test_reach(void **state)
 {
     csg_random random = {72};
-    const csg_fillet_ends none = {NULL, NULL};
+    const csg_fillet_ends none = {0};
     for (int i = 0; i < 4000; i++) {
         double values[MOST], gradients[3 * MOST], r = csg_random_uniform(&random, 0.05, 0.4);
         uint32_t count = random_operands(&random, values, gradients);
@@ -236,6 +236,66 @@ static void test_one_axis(void **state)
     csg_scene_destroy(scene);
 }
 
+static csg_node_id ball(double x, double y, double z, double r)
+{
+    csg_affine place = csg_affine_translate(csg_vec3_make(x, y, z));
+    return csg_build_transform(
+        &builder, &place, csg_build_primitive(&builder, CSG_NODE_SPHERE, (double[]){r}, NOWHERE),
+        NOWHERE);
+}
+
+/* Balls side by side turn from each other as a groove's faces do, in a ring around their gap. */
+static void test_balls_apart(void **state)
+{
+    csg_random random = {76};
+    const double gaps[] = {0.002, 0.02, 0.4, 2};
+    for (int i = 0; i < 4; i++) {
+        csg_node_id balls[2] = {ball(0, 0, 0, 5), ball(10 + gaps[i], 0, 0, 5)};
+        csgm_scene *scene = united(3, balls, 2);
+        const double by =
+            csg_scene_parameters(scene, &scene->nodes[scene->root])[CSG_FILLET_APART_BY];
+        assert_true(by > 0.9 * gaps[i] && by < 1.5 * gaps[i]);
+        for (int k = 0; k < 2000; k++) {
+            csg_vec3 p = csg_vec3_add(csg_vec3_make(5 + gaps[i] / 2, 0, 0), test_point(&random, 3));
+            double other = 5 - csg_vec3_norm(csg_vec3_sub(p, csg_vec3_make(10 + gaps[i], 0, 0)));
+            test_near(test_sample(scene, p).value, fmax(5 - csg_vec3_norm(p), other), 1e-12);
+        }
+        csg_scene_destroy(scene);
+        assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+    }
+    csg_node_id balls[2] = {ball(0, 0, 0, 5), ball(9.9, 0, 0, 5)}; /* these meet */
+    csgm_scene *scene = united(3, balls, 2);
+    assert_true(test_sample(scene, csg_vec3_make(4.95, 1.5, 0)).value > 0);
+    csg_scene_destroy(scene);
+}
+
+/* The same of pins on a plate, of which each has its own fillet, in any order; and of bores. */
+static void test_pins_apart(void **state)
+{
+    csg_random random = {77};
+    for (int cut = 0; cut < 2; cut++) {
+        csgm_scene *scenes[4];
+        for (int i = 0; i < 4; i++) {
+            csg_node_id plate = block((csg_vec3){-20, -20, -3}, (csg_vec3){30, 30, 0});
+            csg_node_id pins[2] = {rod(-9, 9, 4), ball(11.5, 4, 0, 4)}; /* 0.5 apart */
+            csg_node_id nodes[3] = {plate, pins[i % 2], pins[1 - i % 2]};
+            csg_node_kind kind = cut ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION;
+            scenes[i] = test_seal(&builder, csg_build_operator(&builder, kind, csg_blend_fillet(2),
+                                                               nodes, i < 2 ? 3 : 2, NOWHERE));
+            assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
+        }
+        for (int k = 0; k < 4000; k++) {
+            csg_vec3 p = csg_vec3_add(csg_vec3_make(7.2, 4, 0), test_point(&random, 5));
+            double both = test_sample(scenes[0], p).value, one = test_sample(scenes[2], p).value;
+            double other = test_sample(scenes[3], p).value;
+            assert_true(both == test_sample(scenes[1], p).value);
+            test_near(both, cut ? fmin(one, other) : fmax(one, other), 1e-12);
+        }
+        for (int i = 0; i < 4; i++)
+            csg_scene_destroy(scenes[i]);
+    }
+}
+
 /* A third operand beyond a face that two share does not let their blend out of it. */
 static void test_ends_by_pairs(void **state)
 {
@@ -300,6 +360,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_bracket, begin, end),
         cmocka_unit_test_setup_teardown(test_apart, begin, end),
         cmocka_unit_test_setup_teardown(test_one_axis, begin, end),
+        cmocka_unit_test_setup_teardown(test_balls_apart, begin, end),
+        cmocka_unit_test_setup_teardown(test_pins_apart, begin, end),
         cmocka_unit_test_setup_teardown(test_ends_by_pairs, begin, end),
         cmocka_unit_test_setup_teardown(test_flattened, begin, end),
         cmocka_unit_test_setup_teardown(test_planes_are_exact, begin, end),

@@ -41,34 +41,60 @@ static void pack_frame(const csg_compile_frame *f, float *own)
                 (float)(f->place.m[column][row] / f->factor);
 }
 
+/* Where the row of operand k begins (field/tape.h), behind the first one's. */
+static uint32_t row_of(const csg_fillet_planes *planes, uint32_t k)
+{
+    uint32_t others = planes->apart ? planes->apart[k] - planes->apart[0] : 0;
+    return k * ((uint32_t)planes->count + 2) + others;
+}
+
+static bool push_row(csg_compiler *c, const csg_fillet_planes *planes, uint32_t k)
+{
+    const float unknown = INFINITY;
+    uint32_t at, first = planes->apart ? planes->apart[k] : 0;
+    uint32_t end = planes->apart ? planes->apart[k + 1] : 0;
+    for (size_t i = 0; i < planes->count; i++)
+        if (!csg_compile_push(c, &unknown, 1, &at))
+            return false;
+    if (!csg_compile_push(c, (float[]){(float)k, (float)(end - first)}, 2, &at))
+        return false;
+    for (uint32_t i = first; i < end; i++)
+        if (!csg_compile_push(c, (float[]){(float)planes->apart[i]}, 1, &at))
+            return false;
+    return true;
+}
+
 bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t)
 {
     const csg_node *node = &c->scene->nodes[t->node];
     csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, node);
     float own[CSG_FILLET_REACHES] = {(float)t->blend.n, (float)csg_blend_support(t->blend)};
-    const float unknown = INFINITY;
-    uint32_t at;
     pack_frame(&t->frame, own);
+    own[CSG_FILLET_PLANES_ONCE] = (float)planes.count;
+    own[CSG_FILLET_HAS_APART] = planes.apart != NULL;
     if (!csg_compile_push(c, own, CSG_FILLET_REACHES, &t->parameters))
         return false;
-    for (size_t i = 0; i < planes.count * node->child_count; i++)
-        if (!csg_compile_push(c, &unknown, 1, &at))
+    for (uint32_t k = 0; k < node->child_count; k++)
+        if (!push_row(c, &planes, k))
             return false;
-    float *beyond = c->parameters + t->parameters + CSG_FILLET_REACHES;
     for (size_t i = 0; i < planes.count; i++) {
         double d;
-        bool is_known = find_plane(c, node, i, &d);
-        for (size_t k = i; is_known && k < planes.count * node->child_count; k += planes.count)
-            if (planes.reaches[k] < INFINITY)
-                beyond[k] = (float)((planes.reaches[k] - d) * t->frame.factor);
+        if (!find_plane(c, node, i, &d))
+            continue;
+        for (uint32_t k = 0; k < node->child_count; k++) {
+            double reach = planes.reaches[k * planes.count + i];
+            float *row = c->parameters + t->parameters + CSG_FILLET_REACHES + row_of(&planes, k);
+            if (reach < INFINITY)
+                row[i] = (float)((reach - d) * t->frame.factor);
+        }
     }
     return true;
 }
 
 uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t)
 {
-    size_t planes = csg_scene_fillet_planes(c->scene, &c->scene->nodes[t->node]).count;
-    return t->parameters + CSG_FILLET_REACHES + t->written * (uint32_t)planes;
+    csg_fillet_planes planes = csg_scene_fillet_planes(c->scene, &c->scene->nodes[t->node]);
+    return t->parameters + CSG_FILLET_REACHES + row_of(&planes, t->written);
 }
 
 bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count)

@@ -127,7 +127,7 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
         } else if (csg_op_is_fillet(node->op)) {
             if (!widen_operands(tape, i, c, radius, leaves))
                 return false;
-            out->is_crease |= node->planes > 0;
+            out->is_crease |= node->planes > 0 || csg_fillet_has_apart(tape, node);
         } else {
             *is_simple = *is_simple && operator_combines(node);
             out->is_crease |= is_sharp(node);

@@ -29,13 +29,16 @@ typedef struct fillet_arrays {
     float turn; /* -1: an intersection, the union of what is negated */
     double radius;
     const float *to_own; /* where angles are other ones in the fillet's own frame, else NULL */
+    bool has_apart;      /* some operands do not meet */
+    uint32_t own_number; /* where in an operand's row that is */
 } fillet_arrays;
 
 /* Where the operator's children, the last of which is the node before it, have their numbers. */
 static void fillet_numbers(const csg_tape *tape, const csg_tape_node *node, uint32_t *numbers)
 {
     const csg_tape_node *child = node - 1;
-    for (uint32_t k = node->arity; k-- > 0 && node->planes; child -= child->size)
+    bool is_asked = node->planes || tape->parameters[node->parameters + CSG_FILLET_HAS_APART] > 0;
+    for (uint32_t k = node->arity; k-- > 0 && is_asked; child -= child->size)
         numbers[k] = child->join_parameters;
 }
 
@@ -75,6 +78,22 @@ static double fillet_inside(const void *user, const csg_fillet_operand *operands
     return least;
 }
 
+static bool fillet_are_apart(const fillet_arrays *a, uint32_t one, uint32_t other)
+{
+    const float *row = a->parameters + a->numbers[one] + a->own_number;
+    float number = a->parameters[a->numbers[other] + a->own_number];
+    for (uint32_t i = 0; i < (uint32_t)row[1]; i++)
+        if (row[2 + i] == number)
+            return true;
+    return false;
+}
+
+static bool fillet_apart(const void *user, const csg_fillet_operand *a, const csg_fillet_operand *b)
+{
+    const fillet_place *place = user;
+    return fillet_are_apart(place->arrays, a->index, b->index);
+}
+
 static fillet_mix fillet_largest(const fillet_arrays *a, size_t i)
 {
     fillet_mix mix = {.value = a->turn * a->values[i], .share = {1, 0, 0}, .count = 1};
@@ -112,7 +131,9 @@ static fillet_mix fillet_at(const fillet_arrays *a, size_t i)
     if (!count)
         return mix;
     fillet_place place = {a, i};
-    csg_fillet_ends ends = {a->planes ? fillet_inside : NULL, &place};
+    csg_fillet_ends ends = {.inside = a->planes ? fillet_inside : NULL,
+                            .user = &place,
+                            .apart = a->has_apart ? fillet_apart : NULL};
     csg_fillet_choice best = csg_fillet_solve(a->radius, reach, count, &ends);
     double level = reach[0].f + best.excess;
     if (!(level > (double)mix.value)) {
@@ -196,6 +217,9 @@ static void fillet_combine_pair(const fillet_arrays *a, int slopes, int colors, 
     else
         fillet_pairs_blend(NULL, a->turn, a->radius, a->values, a->values + a->stride, gradients,
                            count, &pairs);
+    if (a->has_apart && fillet_are_apart(a, 0, 1))
+        for (size_t i = 0; i < count; i++)
+            pairs.excess[i] = 0;
     for (size_t i = 0; i < count; i++) {
         pairs.end[i] = INFINITY;
         pairs.plane[i] = 0;
@@ -285,6 +309,7 @@ static void fillet_intervals(const fillet_arrays *a, const float *turns, float *
         double bound = csg_fillet_bound(a->radius, (double)most[0] - (double)most[1],
                                         (double)most[0] - (double)most[2], to);
         double sure = csg_fillet_least(a->radius, (double)least[0] - (double)least[1], from, to);
+        sure = a->has_apart ? 0 : sure;
         float top = bound > 0 ? most[0] + (float)(bound + 1e-6 * a->radius) : most[0];
         float bottom = sure > 0 ? least[0] + (float)(sure - 1e-6 * a->radius) : least[0];
         lower[o] = turn * larger(least[0], smaller(bottom, first_end));

@@ -277,6 +277,8 @@ static fillet_arrays fillet_of(const csg_tape *tape, const csg_tape_node *node, 
         .turn = csg_op_is_union(node->op) ? 1.0f : -1.0f,
         .radius = (double)own[CSG_OPERATOR_N],
         .to_own = own[CSG_FILLET_IS_SKEWED] > 0 ? own + CSG_FILLET_TO_OWN : NULL,
+        .has_apart = own[CSG_FILLET_HAS_APART] > 0,
+        .own_number = (uint32_t)own[CSG_FILLET_PLANES_ONCE],
     };
 }
 

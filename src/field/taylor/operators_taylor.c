@@ -439,6 +439,8 @@ bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool 
             return false;
     }
     meeting how = count > 1 ? find_meeting(w, a, &of[order[1]], r, turn, &d, &more) : FIRST;
+    if (how != FIRST && csg_fillet_has_apart(w->tape, node)) /* one that blends here may not */
+        return false;
     if (how == UNKNOWN || (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, &out)))
         return false;
     of[0] = how == SECOND ? of[order[1]] : *a;

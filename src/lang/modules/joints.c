@@ -20,6 +20,9 @@ static void warn(void *user, const csg_joint *joint)
     snprintf(hint, sizeof hint, "blend = fillet(%g) %s", blend.n,
              joint->kind == CSG_JOINT_SWELLS ? "ends flush with it" : "keeps gaps open");
     const char *round_hint = csg_blend_is_round(blend.kind) ? hint : NULL;
+    bool is_near = csg_blend_is_fillet(blend.kind) && joint->amount < csg_blend_support(blend);
+    if (is_near)
+        snprintf(hint, sizeof hint, "blend = round(%g) joins what does not meet", blend.n);
     switch (joint->kind) {
     case CSG_JOINT_SWELLS:
         csg_eval_report(r->e, CSG_DIAG_SWELLS, joint->node->where, round_hint,
@@ -33,7 +36,7 @@ static void warn(void *user, const csg_joint *joint)
                         joint->amount, axis, joint->at);
         break;
     case CSG_JOINT_MISSES:
-        csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, NULL,
+        csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, is_near ? hint : NULL,
                         "the blend joins nothing: its solids%s are %.3g apart",
                         joint->node->kind == CSG_NODE_UNION ? "" : "' surfaces", joint->amount);
         break;

@@ -108,7 +108,8 @@ static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32
     if (!csg_fillet_find_stray(w->tape, node, c, w->radius, fmax(apart, 0), &stray))
         return false;
     for (uint32_t k = 1; k < count; k++)
-        if (!csg_slopes_mix(&of[0], &of[k], share, count > 2))
+        if (!csg_slopes_mix(&of[0], &of[k], share,
+                            count > 2 || csg_fillet_has_apart(w->tape, node)))
             return false;
     for (uint32_t i = 0; i < of[0].balls.count; i++)
         of[0].balls.items[i].spread += stray;
@@ -133,11 +134,14 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
         return false;
     csg_fillet_turns d = csg_fillet_find_turns(w->tape, node, c, w->radius);
     range share = count == 2 ? fillet_shares(w, of, turn, r, d) : (range){0, 1};
+    bool may_crease = csg_fillet_has_apart(w->tape, node); /* and which of them blend is not told */
+    if (may_crease)
+        share = (range){0, 1};
     bool blends = share.low < 1 && share.high > 0;
     if (!blends)
         d = (csg_fillet_turns){0, 0};
     /* A union is least where its operands turn least, but for where the radius fades. */
-    bool is_known = count == 2 && (double)d.most < CSG_FILLET_FADE;
+    bool is_known = count == 2 && (double)d.most < CSG_FILLET_FADE && !may_crease;
     for (int i = 0; i < 2; i++) {
         which from = ends[i][turn < 0], to = ends[i][turn > 0];
         double start = ends_of(w, node, of + count, from), end = ends_of(w, node, of + count, to);

@@ -100,9 +100,9 @@ static bool find_band(const csg_tape *tape, const csg_tape_node *nodes, uint32_t
             !widen(tape, CSG_BLEND_ROUND, node->parameters, csg_op_is_union(node->op), cell, b))
             return false;
         if (csg_op_is_fillet(node->op) &&
-            (node->planes ||
+            (node->planes || csg_fillet_has_apart(tape, node) ||
              !widen(tape, CSG_BLEND_FILLET, node->parameters, csg_op_is_union(node->op), cell, b)))
-            return false; /* it ends in an edge */
+            return false; /* it ends in an edge, or two meet in one */
         if (node->op == CSG_OP_COMBINE || csg_op_delivers(node->op))
             return false;
     }

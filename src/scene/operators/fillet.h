@@ -92,6 +92,8 @@ typedef struct csg_fillet_ends {
     double (*inside)(const void *user, const csg_fillet_operand *operands,
                      const csg_fillet_choice *subset, uint32_t *plane);
     const void *user;
+    /* Whether the solids of two operands do not meet: then they do not blend (fillet_apart.h). */
+    bool (*apart)(const void *user, const csg_fillet_operand *a, const csg_fillet_operand *b);
 } csg_fillet_ends;
 
 static inline double csg_fillet_turn(const csg_fillet_operand *a, const csg_fillet_operand *b)
@@ -195,6 +197,12 @@ static inline void csg_fillet_take(csg_fillet_choice *best, const csg_fillet_ope
         *best = made;
 }
 
+static inline bool csg_fillet_are_apart(const csg_fillet_ends *ends, const csg_fillet_operand *a,
+                                        const csg_fillet_operand *b)
+{
+    return ends->apart && ends->apart(ends->user, a, b);
+}
+
 /* Of operands in their order (csg_fillet_insert), the first of which is the largest of all. */
 static inline csg_fillet_choice csg_fillet_solve(double r, const csg_fillet_operand *o,
                                                  uint32_t count, const csg_fillet_ends *ends)
@@ -203,6 +211,8 @@ static inline csg_fillet_choice csg_fillet_solve(double r, const csg_fillet_oper
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t k = i + 1; k < count; k++) {
             csg_fillet_choice made = {.at = {i, k, 0}, .count = 2};
+            if (csg_fillet_are_apart(ends, &o[i], &o[k]))
+                continue;
             csg_fillet_pair pair =
                 csg_fillet_of_two(r, o[i].f - o[k].f, csg_fillet_turn(&o[i], &o[k]));
             made.excess = o[i].f - o[0].f + pair.excess;
@@ -214,7 +224,10 @@ static inline csg_fillet_choice csg_fillet_solve(double r, const csg_fillet_oper
         for (uint32_t k = i + 1; k < count; k++)
             for (uint32_t l = k + 1; l < count; l++) {
                 csg_fillet_choice made = {.at = {i, k, l}, .count = 3};
-                if (csg_fillet_of_three(r, o, made.at, &made.excess, made.share))
+                bool apart = csg_fillet_are_apart(ends, &o[i], &o[k]) ||
+                             csg_fillet_are_apart(ends, &o[i], &o[l]) ||
+                             csg_fillet_are_apart(ends, &o[k], &o[l]);
+                if (!apart && csg_fillet_of_three(r, o, made.at, &made.excess, made.share))
                     csg_fillet_take(&best, o, made, ends);
             }
     return best;

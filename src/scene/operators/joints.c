@@ -428,8 +428,11 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
     if (!find_hull(l, &hull) || !(support > 0))
         return;
     csg_joint joint = {.kind = CSG_JOINT_MISSES, .node = l->node};
-    joint.amount = find_distance(l, support);
-    if (joint.amount > APART * support) {
+    double apart = csg_blend_is_fillet(l->blend.kind) /* not, if no two of its solids meet */
+                       ? csg_scene_parameters(l->scene, l->node)[CSG_FILLET_APART_BY]
+                       : 0;
+    joint.amount = apart > 0 ? apart : find_distance(l, support);
+    if (apart > 0 || joint.amount > APART * support) {
         take(user, &joint);
         return;
     }
@@ -445,15 +448,6 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
         take(user, &joint);
 }
 
-/* In nodes of which one is a box. */
-static uint64_t cost_of(const csgm_scene *scene, const csg_node *node)
-{
-    enum { SHAPE = 16 };
-    if (node->kind == CSG_NODE_FIELD || node->kind == CSG_NODE_COMBINE)
-        return 1 + scene->formulas[node->payload].count / 4;
-    return node->kind == CSG_NODE_SHAPE ? SHAPE : 1;
-}
-
 static void walk(look *l, csg_joint_take *take, void *user)
 {
     const csgm_scene *scene = l->scene;
@@ -462,7 +456,7 @@ static void walk(look *l, csg_joint_take *take, void *user)
         const csg_node *node = &scene->nodes[i];
         const csg_node_id *children = csg_scene_children(scene, node);
         l->firsts[i] = node->child_count ? l->firsts[children[0]] : (csg_node_id)i;
-        l->cost_before[i + 1] = l->cost_before[i] + cost_of(scene, node);
+        l->cost_before[i + 1] = l->cost_before[i] + csg_reference_cost(scene, node);
         for (uint32_t k = 0; k < node->child_count; k++)
             l->parents[children[k]] = (csg_node_id)i;
     }

@@ -492,7 +492,8 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
         all_soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
     if (csg_blend_is_fillet(blend.kind)) { /* planes are found when the scene is sealed */
         parameters[CSG_FILLET_FIRST_NORMAL] = parameters[CSG_FILLET_FIRST_REACH] = 0;
-        parameters[CSG_FILLET_PLANES] = 0;
+        parameters[CSG_FILLET_PLANES] = parameters[CSG_FILLET_APART] = 0;
+        parameters[CSG_FILLET_APART_BY] = 0;
     } else if (own > 1) {
         parameters[CSG_OPERATOR_RANGE] = all_soft ? 1 : range; /* nothing is converted */
         parameters[CSG_OPERATOR_LAMBDA] = 0;

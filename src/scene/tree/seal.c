@@ -5,6 +5,7 @@
  * of each node are computed once, here.
  */
 #include "scene/boxes/bounds.h"
+#include "scene/operators/fillet_apart.h"
 #include "scene/operators/fillet_planes.h"
 #include "scene/operators/rule.h"
 #include "scene/tree/build.h"
@@ -352,7 +353,8 @@ static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_
 static csgm_status measure(csgm_scene *scene)
 {
     csgm_status status = csg_bounds_fill(scene);
-    return status == CSGM_OK ? csg_fillet_planes_find(scene) : status;
+    status = status == CSGM_OK ? csg_fillet_planes_find(scene) : status;
+    return status == CSGM_OK ? csg_fillet_apart_find(scene) : status;
 }
 
 csgm_status csg_build_snapshot(csg_scene_builder *builder, csg_node_id node, csgm_scene **out)
