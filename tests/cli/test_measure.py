@@ -92,8 +92,15 @@ class Measure(unittest.TestCase):
                 self.holds(found, area)
                 self.assertLessEqual(found[1] - found[0], 10.1 * to * area)
 
-    def test_area_that_nothing_bounds(self):
+    def test_area_of_a_blend_with_a_crease(self):
         scene = "intersection(blend = 1.5) { cube([10, 10, 10], round = 1.5); plane([1, 0, 1], 9); }"
+        low, high = self.measure(scene, "--to", 0.02)["area"]
+        self.assertGreater(low, 400)
+        self.assertLess(high, 600)
+
+    def test_area_that_nothing_bounds(self):
+        # A fillet turns on the gradients of the cube, which are those of its roundings here.
+        scene = "intersection(blend = fillet(1)) { cube([10, 10, 10], round = 1); plane([1, 0, 1], 9); }"
         low, high = self.measure(scene, "--to", 0.02)["area"]
         self.assertGreater(low, 400)
         self.assertIsNone(high)
