@@ -141,6 +141,14 @@ class Tolerance(cli.CliTest):
         self.assert_status(self.run_in(*arguments, "-o", "b.ply", "-q", "--max-memory", "16M", "-j", 1), 0)
         self.assertTrue(self.read("a.ply") == self.read("b.ply"))
 
+    @unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "takes minutes there")
+    def test_too_little_memory_is_told(self):
+        """Tiles that cannot be held all together: how much is needed at least, before the limit is met."""
+        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
+        result = self.run_in("lattice.txt", "-e", "0.05", "-j", "1", "--max-memory", "6M", "-o", "a.ply")
+        self.assert_refused(result, 2, "E0901", "at least 7 MiB of memory are needed", "--quality draft", "-r")
+        self.assert_files("lattice.txt")
+
     def test_too_little_memory(self):
         self.write("plate.txt", PLATE)
         result = self.run_in("plate.txt", "-e", "0.001", "--max-memory", "4M", "-o", "out.ply")

@@ -21,7 +21,7 @@ bool csg_judged_crease_of(const csg_face_side *side, unsigned part, csg_judged_c
 }
 
 /* Copies what an array has to *end, which is then behind it. */
-static const void *put(uint8_t **end, const void *items, size_t bytes)
+static const void *copy_behind(uint8_t **end, const void *items, size_t bytes)
 {
     const void *own = bytes ? *end : NULL;
     if (bytes)
@@ -42,10 +42,11 @@ const csg_judged *csg_judged_keep(csg_arena *arena, const csg_judged *judged)
         return NULL;
     *own = *judged;
     uint8_t *end = (uint8_t *)(own + 1);
-    own->pierced = put(&end, judged->pierced, pierced); /* first: it is aligned like the struct */
-    own->roots = put(&end, judged->roots, roots);
-    own->creases = put(&end, judged->creases, creases);
-    own->apexes = put(&end, judged->apexes, apexes);
+    own->pierced =
+        copy_behind(&end, judged->pierced, pierced); /* first: it is aligned like the struct */
+    own->roots = copy_behind(&end, judged->roots, roots);
+    own->creases = copy_behind(&end, judged->creases, creases);
+    own->apexes = copy_behind(&end, judged->apexes, apexes);
     return own;
 }
 

@@ -323,6 +323,27 @@ static csgm_status paint_whole(adaptive *a)
     return csg_mesh_paint(&a->input, &a->workers.marching, mesh);
 }
 
+/* What the judge has kept of bricks is for the extraction alone: half of what the lattice takes and
+ * more, which thinning out has better use for. */
+static void forget_findings(adaptive *a)
+{
+    for (size_t i = 0; i < a->bricks.count; i++)
+        a->bricks.items[i].judged = NULL;
+    csg_arena_reset(&a->judge.kept);
+}
+
+/* All tiles as one mesh, for which there is twice the room without what the judge has kept. */
+static csgm_status write_tiles(adaptive *a)
+{
+    csg_extraction *x = &a->extraction;
+    forget_findings(a);
+    csgm_status status = csg_joined_write(&a->joined, &x->mesh);
+    if (status == CSGM_OK)
+        x->mesh->origin = csg_mesh_origin_of(&a->input);
+    x->creases = a->joined.creases;
+    return status;
+}
+
 /* Until every place of the surface that was found is near the mesh: hardly ever twice. Where the
  * memory is narrow, the mesh is made and thinned out in tiles. */
 static csgm_status extract(adaptive *a)
@@ -337,7 +358,7 @@ static csgm_status extract(adaptive *a)
             tile ? csg_mesh_make_tiles(&a->input, &a->workers.marching, a->goal, x, tile, &any)
                  : extract_whole(x, &any);
         if (status == CSGM_OK && !any)
-            return tile ? CSGM_OK : paint_whole(a);
+            return tile ? write_tiles(a) : paint_whole(a);
         csg_mesh_destroy(x->mesh);
         x->mesh = NULL;
         x->creases = x->smooth = 0;
@@ -348,17 +369,6 @@ static csgm_status extract(adaptive *a)
     }
 }
 
-/* What the judge has kept of bricks is for the extraction alone: half of what the lattice takes and
- * more, which thinning out has better use for. */
-static void forget_findings(adaptive *a)
-{
-    if (a->goal->is_own)
-        return;
-    for (size_t i = 0; i < a->bricks.count; i++)
-        a->bricks.items[i].judged = NULL;
-    csg_arena_reset(&a->judge.kept);
-}
-
 static csgm_status make_mesh(adaptive *a)
 {
     csgm_mesh **mesh = &a->extraction.mesh;
@@ -366,7 +376,7 @@ static csgm_status make_mesh(adaptive *a)
     a->watch.stage = CSGM_STAGE_MESH;
     if (status == CSGM_OK && !a->goal->is_own)
         status = extract(a);
-    if (status == CSGM_OK)
+    if (status == CSGM_OK && !a->goal->is_own)
         forget_findings(a);
     if (status == CSGM_OK && (*mesh)->triangle_count)
         status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);

@@ -118,11 +118,6 @@ static csgm_status join_tiles(const csg_mesh_input *input, const csg_marching *m
         if (status == CSGM_OK)
             status = check_room(x, goal->joined, cells);
     }
-    if (status == CSGM_OK)
-        status = csg_joined_write(goal->joined, &x->mesh);
-    if (status == CSGM_OK)
-        x->mesh->origin = csg_mesh_origin_of(input);
-    x->creases = goal->joined->creases;
     return status;
 }
 

@@ -14,8 +14,8 @@
 size_t csg_mesh_tile_bricks(const csg_bricks *bricks, const csg_mesh_goal *goal,
                             uint64_t limit_bytes);
 
-/* Tiles of at most so many bricks, joined: extraction->mesh, and what goal->joined points to, which
- * is empty before, the caller's. *any: places of the surface were found that are not near the mesh;
+/* Tiles of at most so many bricks, joined: what goal->joined points to, which is empty before, for
+ * csg_joined_write. *any: places of the surface were found that are not near the mesh;
  * the cells there are wanted divided, and there is no mesh. CSGM_OK or why it was stopped
  * (reported). */
 csgm_status csg_mesh_make_tiles(const csg_mesh_input *input, const csg_marching *marching,
