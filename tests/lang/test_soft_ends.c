@@ -161,6 +161,25 @@ static void fields_stay_lipschitz(void **state)
     }
 }
 
+/* A sharp operator below a rule takes the fields of soft solids; they are divided by the largest of
+ * their slopes. */
+static void sharp_fields_stay_lipschitz(void **state)
+{
+    (void)state;
+    csg_random random = {4};
+    compile(
+        "union(blend = soft_set()) { union() { soft() sphere(2); translate([3, 0, 0]) soft(0.3) "
+        "sphere(1); } translate([0, 3, 0]) soft() sphere(1); }");
+    double steepest = 0;
+    for (int n = 0; n < 100 * POINTS; n++) {
+        csg_vec3 p = random_point(&random, 5);
+        csg_vec3 q = csg_vec3_add(p, random_point(&random, 0.1));
+        double apart = csg_vec3_norm(csg_vec3_sub(p, q));
+        steepest = fmax(steepest, fabs(value_at(p) - value_at(q)) / apart);
+    }
+    assert_true(steepest > 0.3 && steepest <= 1);
+}
+
 /* Where no blend reaches the plateau, nothing is put into the tree. */
 static void what_is_not_needed_is_not_made(void **state)
 {
@@ -194,6 +213,7 @@ int main(void)
         cmocka_unit_test(figures_far_away_change_nothing),
         cmocka_unit_test(what_is_near_blends_by_its_own_field),
         cmocka_unit_test(fields_stay_lipschitz),
+        cmocka_unit_test(sharp_fields_stay_lipschitz),
         cmocka_unit_test(what_is_not_needed_is_not_made),
         cmocka_unit_test(any_allocation_may_fail),
     };

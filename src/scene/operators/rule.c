@@ -88,7 +88,9 @@ csg_rule csg_rule_standard(uint32_t kind)
 
 csg_rule csg_rule_of_fields(void)
 {
-    return csg_rule_standard(CSG_BLEND_FIELD_SHARP);
+    csg_rule rule = csg_rule_standard(CSG_BLEND_FIELD_SHARP);
+    csg_rule_settle(&rule);
+    return rule;
 }
 
 /* ---- checks -----------------------------------------------------------------------------------
