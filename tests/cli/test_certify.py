@@ -89,6 +89,7 @@ class Certify(cli.CliTest):
         self.assertEqual((certify["missed"], certify["unresolved"]), (0, 0), certify["places"])
         self.assertGreater(certify["certified"] + certify["crease"], 500)
 
+    @cli.optimised_only
     def test_clean_scenes(self):
         for name in CLEAN:
             with self.subTest(name):
@@ -154,6 +155,7 @@ class Certify(cli.CliTest):
         self.assert_refused(self.run_in("sheet.txt", "-o", "out.ply", "-r", "64", "-Werror"), 1, "E0406")
         self.assert_files("sheet.txt")
 
+    @cli.optimised_only
     def test_loose_bounds(self):
         """Of a field with steps and a constant far too large nothing is claimed, and nothing is kept silent."""
         self.write("loose.txt", "field(function (p) 1 - norm(p) + 0.000001 * floor(50 * p.x), "

@@ -251,7 +251,8 @@ class Reshaping(ConvertTest):
         self.assertTrue(self.closed(one), one)
         self.mesh("diff", "fine.glb", "b.glb", "--tol", "0.05", "--ignore", "normals", "-q")
 
-    @unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "takes minutes there")
+    @cli.optimised_only
+    @cli.optimised_only
     def test_share_and_count(self):
         self.mesh("parts.txt", "-o", "fine.ply", "-r", "60")  # of -r 60 diff once did not end
         have = self.info("fine.ply")["triangles"]

@@ -165,6 +165,7 @@ class Measure(unittest.TestCase):
                 self.assertEqual(len(caret) - 3, column)
         self.check("cube(2);", status=2, options=("--junit", os.path.join(self.folder, "r.xml")))
 
+    @cli.optimised_only
     def test_as_close_as_seconds_allow(self):
         scene = "linear_extrude(height = 10, twist = 90) square(4, center = true);"  # 1e-4 takes more than two million cubes
         found = self.measure(scene)
@@ -196,6 +197,7 @@ class Measure(unittest.TestCase):
         self.holds(found["mass"], 24)
         self.holds(found["inertia"]["xx"], 24 * 8 / 12)
 
+    @cli.optimised_only
     def test_random_scenes_against_meshes(self):
         dice = random.Random(23)
         for _ in range(6):
@@ -287,6 +289,7 @@ class Measure(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assertIn("not closed", result.stderr)
 
+    @cli.optimised_only
     def test_oriented_box(self):
         scene = "rotate([20, 30, 40]) cube([10, 20, 30], center = true);\n"
         box = self.measure(scene, "--to", 1e-3, "--box")["oriented_box"]
@@ -321,6 +324,7 @@ class Measure(unittest.TestCase):
             self.assertEqual(wrong.returncode, 2)
             self.assertIn(said, wrong.stderr)
 
+    @cli.optimised_only
     def test_overhang_and_draft_of_scenes(self):
         scene = "cube([1, 2, 3]); translate([0, 0, 2.5]) cube([3, 2, 1.5]);\n"
         faces = self.measure(scene, "--to", 1e-3, "--overhang", 45)["faces"]

@@ -32,6 +32,7 @@ class Quality(cli.CliTest):
         self.assertEqual(stats["quality"]["distance_allowed"], 2 ** -7)
         self.assertEqual(len(self.bytes("cube(10);", "--quality", "draft", name="out.stl")), 84 + 12 * 50)
 
+    @cli.optimised_only
     def test_it_is_the_default(self):
         """Whatever else is asked for; -r 128 is what was the default, and what --certify looks at alone."""
         text = "difference() { cube(10); translate([10, 10, 10]) sphere(4); }"
@@ -211,6 +212,7 @@ intersection(blend = 0.3) {
         plate = self.stats("union() { cube([20, 20, 0.01]); translate([30, 0, 0]) cube(5); }", "--simplify", "0.5")
         self.assertEqual(plate["mesh"]["triangles"], 24)
 
+    @cli.optimised_only
     @unittest.skipUnless(cli.has_library("Manifold"), "built without Manifold")
     def test_joined_polyhedra_are_reshaped(self):
         """Of one look, or apart; what is no polyhedron takes cells, as do borders of looks."""

@@ -126,6 +126,7 @@ class Ranks(cli.CliTest):
                                                          ("colours", "blend.txt", "ply", (3,), *draft)):
             self.compare(name, scene, extension, counts, *map(str, options))
 
+    @cli.optimised_only
     def test_tiles(self):
         """Cells that follow the shape where the limit makes each rank thin them out in tiles: another file than with all memory."""
         self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
@@ -187,6 +188,7 @@ class Ranks(cli.CliTest):
         for rank in stats["ranks"][:3]:
             self.assertGreater(rank["halo_cubes"], 0)
 
+    @cli.optimised_only
     def test_stats_of_cells_that_follow(self):
         """Each rank has its share of the work, of a mesh that all have."""
         scene = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
@@ -289,6 +291,7 @@ class Ranks(cli.CliTest):
                 self.assertNotIn(b"csgmesh: ", said)
                 self.assert_files()
 
+    @cli.optimised_only
     def test_killed_rank_of_cells_that_follow(self):
         scene = os.path.join(STRESS, "s5-gyroid.txt")
         line = self.job((3, PROGRAM, scene, "--quality", "fine", "-o", "a.ply"))

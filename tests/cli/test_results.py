@@ -216,6 +216,7 @@ class Statistics(cli.CliTest):
             self.assertEqual(mesh[key], stats[key])
         self.assertAlmostEqual(mesh["volume"], stats["volume"], places=5)
 
+    @cli.optimised_only
     def test_without_room_for_the_mesh(self):
         """It goes to its file as it does without --stats, and its figures are those that go by; the file is looked at in runs."""
         self.write("a.txt", "sphere(10);\n")

@@ -163,6 +163,7 @@ class Slice(unittest.TestCase):
                 for (x, y), (u, v) in zip(loop, other):
                     self.assertLess(abs(x - u) + abs(y - v), 2.1e-5)
 
+    @cli.optimised_only
     @NEEDS_3MF
     def test_3mf_has_what_svg_has(self):
         scene = "torus(8, 2);\ntranslate([0, 0, -2]) cube([3, 2, 4]);\ntranslate([9, 9, 4]) cube(1);\n"
@@ -258,6 +259,7 @@ class Slice(unittest.TestCase):
                         worst = max(worst, off)
         self.assertGreater(worst, 0.2 * within)
 
+    @cli.optimised_only
     def test_heights_follow_the_surface(self):
         scene, how = "translate([0, 0, 20]) sphere(20);\n", ("--layer", 0.1, "--most-layer", 0.5, "--cusp", 0.1, "-e", 0.01)
         out, result = self.slice(scene, *how, "--json")

@@ -125,7 +125,7 @@ class Tolerance(cli.CliTest):
                 self.assertIn("error", result.stderr)
                 self.assert_files("ball.txt")
 
-    @unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "takes minutes there")
+    @cli.optimised_only
     def test_in_little_memory(self):
         """A mesh whose triangles, before they are thinned out, have no room is made in tiles: the limit alone says so, not the threads."""
         self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
@@ -141,7 +141,7 @@ class Tolerance(cli.CliTest):
         self.assert_status(self.run_in(*arguments, "-o", "b.ply", "-q", "--max-memory", "16M", "-j", 1), 0)
         self.assertTrue(self.read("a.ply") == self.read("b.ply"))
 
-    @unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "takes minutes there")
+    @cli.optimised_only
     def test_too_little_memory_is_told(self):
         """Tiles that cannot be held all together: how much is needed at least, before the limit is met."""
         self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
