@@ -56,11 +56,10 @@ class Cells(cli.CliTest):
         stats, counts = self.build(CUT, "--quality", "draft")
         self.assertEqual(sorted(counts), ["blocks", "octree"])
         self.assertGreater(counts["blocks"], sum(stats["lattice"]["blocks"]) if "blocks" in stats["lattice"] else 100)
-        low = [min(at[k] for at in self.places("blocks")) for k in range(3)]
-        high = [max(at[k] for at in self.places("blocks")) for k in range(3)]
-        for k in range(3):
-            self.assertLessEqual(low[k], 0)
-            self.assertGreaterEqual(high[k], 10)
+        coordinates = list(zip(*self.places("blocks")))
+        low, high = map(min, coordinates), map(max, coordinates)
+        self.assertTrue(all(value <= 0 for value in low))
+        self.assertTrue(all(value >= 10 for value in high))
 
     def test_tries(self):
         """Of -e with equal cells only the last one is shown."""
