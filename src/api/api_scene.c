@@ -10,6 +10,7 @@
 #include "lang/lang.h"
 #include "scene/boxes/bounds.h"
 #include "scene/reference.h"
+#include "scene/tree/numbers.h"
 #include "text/folders.h"
 
 csgm_scene_options csgm_scene_options_default(void)
@@ -78,11 +79,7 @@ csgm_scene_info csgm_scene_get_info(const csgm_scene *scene)
                             .has_colors = csg_scene_has_colors(scene),
                             .parse_s = scene->parse_s,
                             .evaluate_s = scene->evaluate_s};
-    for (size_t i = 0; i < scene->node_count; i++) {
-        csg_node_kind kind = (csg_node_kind)scene->nodes[i].kind;
-        info.primitive_count += csg_node_is_primitive(kind);
-        info.operator_count += csg_node_is_operator(kind);
-    }
+    csg_numbers_count(scene, &info.primitive_count, &info.operator_count);
     return info;
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "field/kernels/dispatch.h"
+#include "scene/tree/numbers.h"
 
 static double finite_or_zero(double value)
 {
@@ -42,11 +43,10 @@ void csg_field_destroy(csgm_field *field)
 /* Primitives are distances; formulas may be steeper. */
 void csg_field_count(const csgm_scene *scene, csgm_field *field)
 {
+    csg_numbers_count(scene, &field->primitive_count, &field->operator_count);
     field->tape.steepest = 1;
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
-        field->primitive_count += csg_node_is_primitive((csg_node_kind)node->kind);
-        field->operator_count += csg_node_is_operator((csg_node_kind)node->kind);
         if (node->kind == CSG_NODE_FIELD)
             field->tape.steepest =
                 fmaxf(field->tape.steepest, (float)scene->formulas[node->payload].lipschitz);

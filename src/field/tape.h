@@ -98,7 +98,7 @@ typedef struct csg_tape_node {
                       csg_tape_curve */
     uint8_t join_blend;
     uint8_t frame;            /* leaves: csg_leaf_frame */
-    bool is_plane;            /* leaves: at which a fillet ends, none of its operands */
+    bool is_plane;            /* leaves: at which a blend ends, none of its operands: no colour */
     uint16_t planes;          /* fillets: how many of the last children are such */
     uint32_t warp;            /* leaves: index + 1 of the innermost warp above, 0 = none */
     uint32_t parameters;      /* leaves, operators: into the parameters */

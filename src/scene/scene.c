@@ -53,7 +53,7 @@ void csg_look_take_inner(csg_look *outer, const csg_look *inner)
 
 csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node)
 {
-    return (csg_blend){node->blend, scene->parameters[node->payload]};
+    return (csg_blend){node->blend, scene->parameters[node->payload], false};
 }
 
 uint32_t csg_node_parameter_count(const csg_node *node)
@@ -75,6 +75,19 @@ bool csg_node_is_plate(const csg_node *node)
 bool csg_node_is_fillet(const csg_node *node)
 {
     return csg_node_is_operator(node->kind) && csg_blend_is_fillet(node->blend);
+}
+
+bool csg_node_is_idle(const csg_node *node)
+{
+    return csg_node_is_operator(node->kind) && csg_blend_is_sharp(node->blend) &&
+           (node->flags & (CSG_FLAG_NUMBER | CSG_FLAG_SOFT)) == CSG_FLAG_NUMBER;
+}
+
+bool csg_node_ends_flush(const csg_node *node)
+{
+    return node->kind == CSG_NODE_UNION &&
+           (csg_blend_is_fillet(node->blend) ||
+            (node->flags & (CSG_FLAG_UNGROUPED | CSG_FLAG_UNENDED)));
 }
 
 csg_fillet_planes csg_scene_fillet_planes(const csgm_scene *scene, const csg_node *node)

@@ -71,10 +71,21 @@ typedef struct csg_look {
 void csg_look_take_inner(csg_look *outer, const csg_look *inner);
 
 /* PLATEAU: while a scene is built, the field may stay above a value however far away
- * (tree/build_ends.c). */
-enum { CSG_FLAG_FLAT = 1, CSG_FLAG_SOFT = 2, CSG_FLAG_PLATEAU = 4 };
+ * (tree/build_ends.c). Of operators whose blend was a number (tree/numbers.h): NUMBER, so that it
+ * is printed as one; UNGROUPED and UNENDED, until what that means has been put into the tree.
+ * ENDED: a sharp intersection of a union and what the union ends at, which shapes it but has no
+ * colour; the union is the first child. */
+enum {
+    CSG_FLAG_FLAT = 1,
+    CSG_FLAG_SOFT = 2,
+    CSG_FLAG_PLATEAU = 4,
+    CSG_FLAG_NUMBER = 8,
+    CSG_FLAG_UNGROUPED = 16,
+    CSG_FLAG_UNENDED = 32,
+    CSG_FLAG_ENDED = 64
+};
 
-/* What holds operands of a fillet: half-spaces with this normal, or, where is_round, cylinders
+/* What holds operands of a union: half-spaces with this normal, or, where is_round, cylinders
  * without end around the axis through `foot` along it. */
 typedef struct csg_fillet_end {
     csg_vec3 normal, foot;
@@ -167,6 +178,11 @@ csg_blend csg_scene_blend(const csgm_scene *scene, const csg_node *node);
 bool csg_node_is_plate(const csg_node *node);
 /* Whether it is an operator that looks at its operands' gradients (operators/fillet.h). */
 bool csg_node_is_fillet(const csg_node *node);
+/* Whether it is an operator whose blend, a number, joins nothing: a sharp one, whose n it is. */
+bool csg_node_is_idle(const csg_node *node);
+/* Whether it is a union that adds nothing beyond half-spaces that hold its operands
+ * (operators/fillet_planes.h). */
+bool csg_node_ends_flush(const csg_node *node);
 /* How far the operands of a fillet, a union, reach in its own frame: operand k lies within
  * csg_fillet_towards(ends[i], p) <= reaches[k * count + i]. */
 typedef struct csg_fillet_planes {

@@ -111,7 +111,7 @@ csg_node_id csg_solid_grown(csg_solid_job *job, csg_node_id node, double r)
 
 csg_node_id csg_solid_union(csg_solid_job *job, const csg_node_id *nodes, size_t count)
 {
-    const csg_blend sharp = {0, 0};
+    const csg_blend sharp = CSG_SHARP;
     return csg_solid_done(
         job, csg_build_operator(job->builder, CSG_NODE_UNION, sharp, nodes, count, job->where));
 }

@@ -192,6 +192,14 @@ intersection(blend = 0.3) {
             self.assertTrue(stats["files"][0]["manifold"], name)
             self.assertAlmostEqual(stats["mesh"]["volume"], 1000 + 700 - 250, delta=0.5)
 
+    def test_colors_of_a_blend_that_ends_flush(self):
+        """Where a number's blend ends at a plane the face has the solids' colours, which mix."""
+        self.bytes('union(blend = 3) { color("#f00") cube([40, 20, 5]); color("#00f") cube([5, 20, 40]); }', name="out.obj")
+        with open(self.path("out.obj"), encoding="ascii") as file:
+            vertices = [list(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+        self.assertTrue(all(green < 1e-6 and abs(red + blue - 1) < 0.01 for _, _, _, red, green, blue in vertices))
+        self.assertTrue(any(0.2 < red < 0.8 and y == 0 for _, y, _, red, _, _ in vertices))
+
     def test_polyhedra_are_reshaped(self):
         """What thins out and improves begins with their triangles: no cells, however long and thin these are."""
         ball = "sphere(10, $fn = 60);"

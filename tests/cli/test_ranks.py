@@ -282,7 +282,7 @@ class Ranks(cli.CliTest):
                 with subprocess.Popen(line, cwd=self.folder, env=self.environment, stderr=subprocess.PIPE,
                                       stdout=subprocess.DEVNULL) as job:
                     deadline = time.monotonic() + 60
-                    while not os.listdir(self.folder) and time.monotonic() < deadline:
+                    while not all(map(self.has_file, range(3))) and time.monotonic() < deadline:
                         time.sleep(0.02)
                     self.assertTrue(os.listdir(self.folder), "no file was begun")
                     os.kill(self.process_of(victim), signal.SIGKILL)
@@ -406,6 +406,15 @@ class Ranks(cli.CliTest):
                 return int(file.read().rpartition(")")[2].split()[11]) / os.sysconf("SC_CLK_TCK")
         except (self.failureException, OSError):
             return 0
+
+    def has_file(self, rank):
+        """Whether a rank has opened the file that all write to: from then on each of them removes it when it is ended."""
+        try:
+            files = f"/proc/{self.process_of(rank)}/fd"
+            return any(os.readlink(os.path.join(files, one)).startswith(os.path.realpath(self.folder) + "/.csgmesh")
+                       for one in os.listdir(files))
+        except (OSError, self.failureException):
+            return False
 
     def process_of(self, rank):
         """The process that is this rank of the job in the test's folder."""

@@ -11,7 +11,7 @@
 #include "scene/operators/blend_kinds.h"
 #include "scene/primitives/kinds.h"
 
-#define SHARP ((csg_blend){CSG_BLEND_SHARP, 0})
+#define SHARP ((csg_blend){CSG_BLEND_SHARP, 0, false})
 
 static csg_node_id ball(csg_scene_builder *b, double r, double x)
 {
@@ -70,7 +70,7 @@ static void test_flattening(void **state)
         test_subject s;
         test_subject_begin(&s);
         csg_scene_builder *b = &s.builder;
-        csg_blend blend = blended ? (csg_blend){CSG_BLEND_PARABOLA, 0.4} : SHARP;
+        csg_blend blend = blended ? (csg_blend){CSG_BLEND_PARABOLA, 0.4, false} : SHARP;
         csg_node_id inner = two(b, CSG_NODE_UNION, blend, ball(b, 1, 0), ball(b, 1, 1));
         csg_affine place = csg_affine_translate(csg_vec3_make(0, 2, 0));
         inner = csg_build_transform(b, &place, inner, NOWHERE);
@@ -95,7 +95,7 @@ static double compiled_n(csg_blend blend, const csg_affine *place)
     uint32_t at = tape->nodes[tape->count - 1].parameters;
     double n = (double)tape->parameters[at + CSG_OPERATOR_N];
     double chi = (double)tape->parameters[at + CSG_OPERATOR_SUPPORT];
-    double expected = csg_blend_support((csg_blend){blend.kind, n});
+    double expected = csg_blend_support((csg_blend){blend.kind, n, false});
     assert_true(chi == expected || fabs(chi - expected) <= 1e-6 * expected);
     test_subject_end(&s);
     return n;
@@ -106,10 +106,10 @@ static void test_scaled_blends(void **state)
 {
     csg_affine twice = csg_affine_scale(csg_vec3_make(2, 2, 2));
     csg_affine unequal = csg_affine_scale(csg_vec3_make(2, 0.5, 3));
-    test_near(compiled_n((csg_blend){CSG_BLEND_HYPERBOLA, 0.01}, &twice), 0.04, 1e-8);
-    test_near(compiled_n((csg_blend){CSG_BLEND_RECIPROCAL, 0.01}, &unequal), 0.0025, 1e-9);
-    test_near(compiled_n((csg_blend){CSG_BLEND_ROUND, 0.1}, &twice), 0.2, 1e-7);
-    test_near(compiled_n((csg_blend){CSG_BLEND_CHAMFER, 0.1}, &unequal), 0.05, 1e-8);
+    test_near(compiled_n((csg_blend){CSG_BLEND_HYPERBOLA, 0.01, false}, &twice), 0.04, 1e-8);
+    test_near(compiled_n((csg_blend){CSG_BLEND_RECIPROCAL, 0.01, false}, &unequal), 0.0025, 1e-9);
+    test_near(compiled_n((csg_blend){CSG_BLEND_ROUND, 0.1, false}, &twice), 0.2, 1e-7);
+    test_near(compiled_n((csg_blend){CSG_BLEND_CHAMFER, 0.1, false}, &unequal), 0.05, 1e-8);
 }
 
 static void test_depths(void **state)
@@ -125,7 +125,7 @@ static void test_depths(void **state)
         test_subject_begin(&s);
         for (uint32_t i = 0; i < rows[r].operands; i++)
             nodes[i] = ball(&s.builder, 1, i);
-        csg_blend blend = {rows[r].blend, rows[r].blend == CSG_BLEND_SHARP ? 0 : 0.1};
+        csg_blend blend = {rows[r].blend, rows[r].blend == CSG_BLEND_SHARP ? 0 : 0.1, false};
         test_subject_compile(&s, csg_build_operator(&s.builder, CSG_NODE_UNION, blend, nodes,
                                                     rows[r].operands, NOWHERE));
         assert_int_equal(csg_tape_depth(&s.field->tape), rows[r].depth);
@@ -145,7 +145,7 @@ static void test_deep(void **state)
     csg_node_id node = ball(b, 1, 0);
     for (int i = 1; i < LEVELS; i++)
         node = two(b, i % 2 ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE,
-                   (csg_blend){CSG_BLEND_PARABOLA, 1e-4}, ball(b, 1, 1e-4 * i), node);
+                   (csg_blend){CSG_BLEND_PARABOLA, 1e-4, false}, ball(b, 1, 1e-4 * i), node);
     test_subject_compile(&s, node);
     assert_int_equal(s.field->tape.count, 2 * LEVELS - 1);
     assert_int_equal(s.field->depth, LEVELS);
@@ -259,8 +259,8 @@ static void test_print(void **state)
     test_subject s;
     test_subject_begin(&s);
     csg_scene_builder *b = &s.builder;
-    csg_node_id both = two(b, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_ROUND, 0.1}, ball(b, 1, 0),
-                           ball(b, 1, 1));
+    csg_node_id both = two(b, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_ROUND, 0.1, false},
+                           ball(b, 1, 0), ball(b, 1, 1));
     test_subject_compile(&s, both);
     text first = {.length = 0}, second = {.length = 0};
     assert_int_equal(csg_field_print_tape(s.field, collect, &first), CSGM_OK);

@@ -196,8 +196,8 @@ static csg_node_id random_scene(test_subject *subject, csg_random *random, int t
     csg_node_id ball = csg_build_ball(builder, 1.5, NOWHERE);
     if (turn % 5 == 0)
         return field;
-    csg_blend blend = turn % 5 == 1   ? (csg_blend){CSG_BLEND_ROUND, 0.3}
-                      : turn % 5 == 2 ? (csg_blend){CSG_BLEND_PARABOLA, 0.3}
+    csg_blend blend = turn % 5 == 1   ? (csg_blend){CSG_BLEND_ROUND, 0.3, false}
+                      : turn % 5 == 2 ? (csg_blend){CSG_BLEND_PARABOLA, 0.3, false}
                                       : (csg_blend){0};
     return csg_build_operator(builder, turn % 5 == 3 ? CSG_NODE_DIFFERENCE : CSG_NODE_INTERSECTION,
                               blend, (csg_node_id[]){ball, field}, 2, NOWHERE);

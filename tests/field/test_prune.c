@@ -140,7 +140,7 @@ static void two_blocks(test_subject *s, csg_node_kind how, double apart, unsigne
         nodes[k] = csg_build_color(builder, color,
                                    csg_build_transform(builder, &place, node, NOWHERE), NOWHERE);
     }
-    csg_blend blend = {CSG_BLEND_FILLET, 0.2};
+    csg_blend blend = {CSG_BLEND_FILLET, 0.2, false};
     test_subject_compile(s, csg_build_operator(builder, how, blend, nodes, count, NOWHERE));
 }
 
@@ -271,8 +271,8 @@ static void test_one_of_many(void **state)
             NOWHERE);
     }
     test_subject_compile(&w.subject, csg_build_operator(&w.subject.builder, CSG_NODE_UNION,
-                                                        (csg_blend){CSG_BLEND_ROUND, 0.1}, nodes,
-                                                        1000, NOWHERE));
+                                                        (csg_blend){CSG_BLEND_ROUND, 0.1, false},
+                                                        nodes, 1000, NOWHERE));
     walk_begin(&w, 10);
     cube at = {csg_vec3_make(0.5, 0.5, 0.5), 0.2}; /* field frame: the centre is (4.5, 4.5, 4.5) */
     prune_children(&w, &w.subject.field->tape, at);

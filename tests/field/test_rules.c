@@ -307,7 +307,7 @@ static csg_blend random_blend(csg_scene_builder *builder, csg_random *random, bo
     size_t row = csg_random_below(random, KINDS);
     csg_blend_kind kind = kinds[row];
     if (kind == CSG_BLEND_FIELD_SHARP || is_combined(row))
-        return (csg_blend){CSG_BLEND_SHARP, 0}; /* the builder makes them */
+        return (csg_blend){CSG_BLEND_SHARP, 0, false}; /* the builder makes them */
     csg_rule rule = random_rule(random, kind, turning && csg_random_below(random, 2));
     rule.range = uniform(random, 0.1, 0.4);
     return csg_build_rule(builder, &rule);

@@ -52,7 +52,7 @@ static const struct {
 
 static csg_node_id make_scene(csg_scene_builder *b, int which)
 {
-    csg_blend two = {CSG_BLEND_FILLET, 2}, one = {CSG_BLEND_FILLET, 1};
+    csg_blend two = {CSG_BLEND_FILLET, 2, false}, one = {CSG_BLEND_FILLET, 1, false};
     csg_node_id nodes[3];
     csg_affine squash = csg_affine_scale(csg_vec3_make(1, 1.5, 0.8));
     csg_box plate = {{-9, -9, -6}, {9, 9, -4}};

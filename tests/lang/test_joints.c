@@ -19,7 +19,7 @@ static bench b;
 
 enum { SWELLS = -340, FILLS = -341, CUTS = -342, MISSES = -304 };
 
-#define BRACKET "union(blend = 3) { cube([40, 20, 5]); cube([5, 20, 40]); }"
+#define BRACKET "union(blend = round(3)) { cube([40, 20, 5]); cube([5, 20, 40]); }"
 
 static void check(const char *text, int code)
 {
@@ -45,34 +45,38 @@ static void swelling_is_told_where_it_is_seen(void **state)
     check("difference() { " BRACKET " translate([20, 10, -50]) cylinder(h = 100, r = 2); }",
           SWELLS);
     check("union(blend = overblend(3)) { cube([40, 20, 5]); cube([5, 20, 40]); }", SWELLS);
-    check("linear_extrude(5) union(blend = 2) { square([20, 5]); square([5, 20]); }", SWELLS);
+    check("linear_extrude(5) union(blend = round(2)) { square([20, 5]); square([5, 20]); }",
+          SWELLS);
     /* each ends where the next one does, side by side */
-    check("union(blend = 2) { cube(9); translate([9, 1, 1]) cube([9, 7, 8]); }", SWELLS);
+    check("union(blend = round(2)) { cube(9); translate([9, 1, 1]) cube([9, 7, 8]); }", SWELLS);
 }
 
 static void no_swelling_where_there_is_none(void **state)
 {
     check("union(blend = fillet(3)) { cube([40, 20, 5]); cube([5, 20, 40]); }", 0);
     check("union() { cube([40, 20, 5]); cube([5, 20, 40]); }", 0);
-    check("union(blend = 3) { cube([40, 20, 5]); translate([5, 5, 2]) cube([5, 9, 40]); }", 0);
+    check("union(blend = round(3)) { cube([40, 20, 5]); translate([5, 5, 2]) cube([5, 9, 40]); }",
+          0);
     check("intersection() { cube([90, 20, 90]); " BRACKET " }", 0);             /* cut off */
     check("union() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0);      /* covered */
     check("difference() { translate([-5, -5, -5]) cube(60); " BRACKET " }", 0); /* cut out */
-    check("linear_extrude(2) union(blend = 3) { circle(10); translate([5, 0]) circle(10); }", 0);
-    check("linear_extrude(5) union(blend = 3) { translate([0, 1]) square([10, 9]); "
+    check("linear_extrude(2) union(blend = round(3)) { circle(10); translate([5, 0]) circle(10); }",
+          0);
+    check("linear_extrude(5) union(blend = round(3)) { translate([0, 1]) square([10, 9]); "
           "translate([9, 0]) square([10, 9.5]); }",
           0);
     /* balls end in one plane, too, but have no faces */
-    check("union(blend = 2) { sphere(5); translate([6, 0, 0]) sphere(5); }", 0);
-    check("union(blend = 0.1) for (i = [0 : 40]) translate([i / 8, 0, 0]) sphere(2);", 0);
-    check(
-        "rotate_extrude() translate([9, 0]) union(blend = 2) { square([20, 5]); square([5, 20]); }",
-        0);
+    check("union(blend = round(2)) { sphere(5); translate([6, 0, 0]) sphere(5); }", 0);
+    check("union(blend = round(0.1)) for (i = [0 : 40]) translate([i / 8, 0, 0]) sphere(2);", 0);
+    check("rotate_extrude() translate([9, 0]) union(blend = round(2)) { square([20, 5]); "
+          "square([5, 20]); }",
+          0);
 }
 
 static void filled_gaps_are_told(void **state)
 {
-    check("union(blend = 8) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }", FILLS);
+    check("union(blend = round(8)) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
+          FILLS);
     assert_non_null(strstr(b.text, "fills the gap of 2 between its solids around z = 6"));
     assert_non_null(strstr(b.text, "blend = fillet(8) keeps gaps open"));
     check("union(blend = fillet(8)) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
@@ -81,53 +85,63 @@ static void filled_gaps_are_told(void **state)
     assert_non_null(strstr(b.text, "blend = round(8) joins what does not meet"));
     check("union(blend = fillet(4)) { sphere(5); translate([11, 0, 0]) sphere(5); }", MISSES);
     check("union(blend = fillet(4)) { sphere(5); translate([9, 0, 0]) sphere(5); }", 0);
-    check("union(blend = 3) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }", 0);
+    check("union(blend = 8) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
+          MISSES);
+    check("union(blend = round(3)) { cube([40, 40, 5]); translate([0, 0, 7]) cube([40, 40, 5]); }",
+          0);
     /* faces that are apart by rounding */
-    check("union(blend = 1) for (i = [0 : 9]) translate([i * 10.1, i, 0]) cube([10.1, 8, 5 + i]);",
+    check("union(blend = round(1)) for (i = [0 : 9]) translate([i * 10.1, i, 0]) cube([10.1, 8, 5 "
+          "+ i]);",
           SWELLS);
     /* balls that grow together are what blends are for */
-    check("union(blend = 4) { sphere(5); translate([11, 0, 0]) sphere(5); }", 0);
+    check("union(blend = round(4)) { sphere(5); translate([11, 0, 0]) sphere(5); }", 0);
 }
 
 static void blends_of_nothing_are_told(void **state)
 {
-    check("union(blend = 2) { sphere(5); translate([500, 0, 0]) sphere(2); }", MISSES);
+    check("union(blend = round(2)) { sphere(5); translate([500, 0, 0]) sphere(2); }", MISSES);
     assert_non_null(strstr(b.text, "the blend joins nothing: its solids are 493 apart"));
     /* far away, and yet it acts: the field of what is stretched rises slowly */
-    check("union(blend = 1) { scale([1, 1, 100]) sphere(1); translate([0, 0, 210]) "
+    check("union(blend = round(1)) { scale([1, 1, 100]) sphere(1); translate([0, 0, 210]) "
           "scale([1, 1, 100]) sphere(1); }",
           0);
-    check("union(blend = 2) { sphere(5); translate([8, 0, 0]) sphere(2); translate([500, 0, 0]) "
+    check("union(blend = round(2)) { sphere(5); translate([8, 0, 0]) sphere(2); translate([500, 0, "
+          "0]) "
           "sphere(2); }",
           0);
 }
 
 static void cuts_that_blend_nothing_are_told(void **state)
 {
-    check("difference(blend = 1) { cube(20); translate([50, 0, 0]) sphere(5); }", MISSES);
+    check("difference(blend = round(1)) { cube(20); translate([50, 0, 0]) sphere(5); }", MISSES);
     assert_non_null(strstr(b.text, "joins nothing: its solids' surfaces are 25 apart"));
     /* a cavity: nothing meets; a hole does, and so do two cavities */
-    check("difference(blend = 1) { cube(60, center = true); sphere(5); }", MISSES);
+    check("difference(blend = round(1)) { cube(60, center = true); sphere(5); }", MISSES);
     assert_non_null(strstr(b.text, "are 21.3 apart")); /* of the ball's box, by its half diagonal */
-    check("difference(blend = 1) { cube(60, center = true); cylinder(h = 90, r = 5, center = "
-          "true); }",
-          0);
-    check("difference(blend = 1) { cube(60, center = true); sphere(5); translate([4, 0, 0]) "
+    check(
+        "difference(blend = round(1)) { cube(60, center = true); cylinder(h = 90, r = 5, center = "
+        "true); }",
+        0);
+    check("difference(blend = round(1)) { cube(60, center = true); sphere(5); translate([4, 0, 0]) "
           "sphere(5); }",
           0);
-    check("difference(blend = 1) { cube(60, center = true); translate([24, 0, 0]) sphere(5); }", 0);
-    check("intersection(blend = 1) { sphere(50); cube(9, center = true); }", MISSES);
-    check("intersection(blend = 1) { sphere(5); cube(9, center = true); }", 0);
-    check("intersection(blend = 1) { plane([0, 0, 1], 90); cube(9, center = true); }", MISSES);
-    check(
-        "difference(blend = 1) { cube(20); translate([50, 0, 0]) sphere(5); translate([9, 9, 18]) "
-        "sphere(5); }",
-        0);
-    check("intersection() { cube(90, center = true); intersection(blend = 1) { plane([0, -1, 0], "
+    check("difference(blend = round(1)) { cube(60, center = true); translate([24, 0, 0]) "
+          "sphere(5); }",
+          0);
+    check("intersection(blend = round(1)) { sphere(50); cube(9, center = true); }", MISSES);
+    check("intersection(blend = round(1)) { sphere(5); cube(9, center = true); }", 0);
+    check("intersection(blend = round(1)) { plane([0, 0, 1], 90); cube(9, center = true); }",
+          MISSES);
+    check("difference(blend = round(1)) { cube(20); translate([50, 0, 0]) sphere(5); translate([9, "
+          "9, 18]) "
+          "sphere(5); }",
+          0);
+    check("intersection() { cube(90, center = true); intersection(blend = round(1)) { plane([0, "
+          "-1, 0], "
           "-25); plane([1, 1, 0], 3); } }",
           0);
     /* what is stretched: its field rises slowly, and blends where its surface is far */
-    check("difference(blend = 1) { scale([1, 1, 100]) sphere(1); translate([0, 0, 210]) "
+    check("difference(blend = round(1)) { scale([1, 1, 100]) sphere(1); translate([0, 0, 210]) "
           "scale([1, 1, 100]) sphere(1); }",
           0);
 }
@@ -137,29 +151,33 @@ static void cuts_that_blend_nothing_are_told(void **state)
 
 static void cut_seams_are_told(void **state)
 {
-    check("difference(blend = 1) { " PLATES HOLE " }", CUTS);
+    check("difference(blend = round(1)) { " PLATES HOLE " }", CUTS);
     assert_non_null(strstr(b.text, "cuts a groove of 0.9 along the face at z = 5"));
     check("difference(blend = fillet(1)) { color(\"red\") " PLATES HOLE " }", CUTS);
-    check("rotate([30, 40, 50]) intersection(blend = 1) { cube(9); translate([1, 2, 1]) " PLATES
-          " }",
+    check("rotate([30, 40, 50]) intersection(blend = round(1)) { cube(9); translate([1, 2, "
+          "1]) " PLATES " }",
           CUTS);
     /* halves that mirror each other, and a joint of flat figures */
-    check("difference(blend = 1) { for (s = [0, 1]) mirror([0, 0, s]) linear_extrude(9, twist = "
+    check("difference(blend = round(1)) { for (s = [0, 1]) mirror([0, 0, s]) linear_extrude(9, "
+          "twist = "
           "20) square(20, center = true); " HOLE " }",
           CUTS);
-    check("linear_extrude(5) difference(blend = 1) { union() { square(10); translate([10, 0]) "
-          "square(10); } translate([10, 5]) circle(2); }",
-          CUTS);
+    check(
+        "linear_extrude(5) difference(blend = round(1)) { union() { square(10); translate([10, 0]) "
+        "square(10); } translate([10, 5]) circle(2); }",
+        CUTS);
     /* what lies between the seam and the blend does not matter where it does nothing */
-    check("difference(blend = 1) { union(blend = 2) { difference() { " PLATES
+    check("difference(blend = round(1)) { union(blend = round(2)) { difference() { " PLATES
           " translate([18, 18, -1]) cube(20); } translate([3, 1, 9]) cube([12, 1, 5]); } " HOLE
           " }",
           CUTS);
     /* of many holes the last one */
-    check("difference(blend = 1) { " PLATES " for (i = [0 : 6]) translate([2 + 2.5 * i, 15, i]) "
+    check("difference(blend = round(1)) { " PLATES
+          " for (i = [0 : 6]) translate([2 + 2.5 * i, 15, i]) "
           "cylinder(h = 1, r = 1); " HOLE " }",
           CUTS);
-    check("union(blend = 1) { difference() { cube(30); translate([5, 5, 5]) cube([10, 20, 30]); "
+    check("union(blend = round(1)) { difference() { cube(30); translate([5, 5, 5]) cube([10, 20, "
+          "30]); "
           "translate([15, 5, 5]) cube([10, 20, 30]); } translate([15, 15, 2]) cylinder(h = 20, r "
           "= 3); }",
           CUTS);
@@ -169,32 +187,38 @@ static void cut_seams_are_told(void **state)
 static void no_seam_where_there_is_none(void **state)
 {
     check("difference() { " PLATES HOLE " }", 0);
-    check("difference(blend = 1) { union() { cube([20, 20, 6]); translate([0, 0, 5]) cube([20, 20, "
+    check("difference(blend = round(1)) { union() { cube([20, 20, 6]); translate([0, 0, 5]) "
+          "cube([20, 20, "
           "5]); } " HOLE " }",
           0);
     /* the blend fills the seam, another solid covers it, the hole stays away from it */
-    check("difference(blend = 1) { union(blend = round(1)) { cube([20, 20, 5]); translate([1, 1, "
+    check("difference(blend = round(1)) { union(blend = round(1)) { cube([20, 20, 5]); "
+          "translate([1, 1, "
           "5]) cube([18, 18, 5]); } " HOLE " }",
           0);
-    check("difference(blend = 1) { union() { " PLATES
+    check("difference(blend = round(1)) { union() { " PLATES
           " translate([1, 1, 1]) cube([18, 18, 8]); } " HOLE " }",
           0);
-    check("difference(blend = 1) { " PLATES " translate([10, 10, 7]) cylinder(h = 30, r = 4); }",
+    check("difference(blend = round(1)) { " PLATES
+          " translate([10, 10, 7]) cylinder(h = 30, r = 4); }",
           0);
-    check("difference(blend = 1) { " PLATES " translate([10, 10, 7]) sphere(2); }", CUTS);
-    check("difference(blend = 1) { " PLATES " translate([40, 10, -1]) cylinder(h = 30, r = 4); }",
+    check("difference(blend = round(1)) { " PLATES " translate([10, 10, 7]) sphere(2); }", CUTS);
+    check("difference(blend = round(1)) { " PLATES
+          " translate([40, 10, -1]) cylinder(h = 30, r = 4); }",
           MISSES);
     /* cut off, or not seen since something else is there */
-    check("intersection() { cube([20, 20, 4]); difference(blend = 1) { " PLATES HOLE " } }", 0);
-    check("union() { difference(blend = 1) { " PLATES HOLE " } translate([3, 3, 3]) cube([14, 14, "
+    check("intersection() { cube([20, 20, 4]); difference(blend = round(1)) { " PLATES HOLE " } }",
+          0);
+    check("union() { difference(blend = round(1)) { " PLATES HOLE
+          " } translate([3, 3, 3]) cube([14, 14, "
           "4]); }",
           0);
     /* balls that touch in a point have no face in common */
-    check("difference(blend = 1) { union() { sphere(5); translate([10, 0, 0]) sphere(5); } "
+    check("difference(blend = round(1)) { union() { sphere(5); translate([10, 0, 0]) sphere(5); } "
           "translate([5, 0, -9]) cylinder(h = 18, r = 1); }",
           0);
     /* two pockets side by side */
-    check("difference(blend = 1) { cube(30); translate([5, 5, 5]) cube([10, 20, 30]); "
+    check("difference(blend = round(1)) { cube(30); translate([5, 5, 5]) cube([10, 20, 30]); "
           "translate([15, 5, 5]) cube([10, 20, 30]); }",
           0);
 }
@@ -211,7 +235,7 @@ static void seams_are_cut_where_it_is_told(void **state)
         for (int k = 0; k < 6; k++)
             w[k] = csg_random_uniform(&random, 6, 12);
         snprintf(text, sizeof text,
-                 "difference(blend = %.17g) { union() { cube([%.17g, %.17g, %.17g]); "
+                 "difference(blend = round(%.17g)) { union() { cube([%.17g, %.17g, %.17g]); "
                  "translate([0, 0, %.17g]) cube([%.17g, 7, 8]); } "
                  "translate([3, 3, -9]) cylinder(h = 99, r = %.17g); }",
                  w[0] / 20, w[1], w[2], w[3], w[3], w[4], w[5] / 8);
@@ -242,10 +266,11 @@ static void swelling_is_as_large_as_the_field_says(void **state)
         char text[400], by[40];
         for (int k = 0; k < 8; k++)
             w[k] = csg_random_uniform(&random, 4, 12);
-        snprintf(text, sizeof text,
-                 "union(blend = %.17g) { cube([%.17g, %.17g, %.17g]); translate([%.17g, 1, 0]) "
-                 "cube([%.17g, %.17g, %.17g]); }",
-                 w[0] / 3, w[1], w[2], w[3], w[4], w[5], w[6], w[7]);
+        snprintf(
+            text, sizeof text,
+            "union(blend = round(%.17g)) { cube([%.17g, %.17g, %.17g]); translate([%.17g, 1, 0]) "
+            "cube([%.17g, %.17g, %.17g]); }",
+            w[0] / 3, w[1], w[2], w[3], w[4], w[5], w[6], w[7]);
         assert_int_equal(bench_compile(&b, text), CSGM_OK);
         if (!(w[4] < w[1]))
             continue;
@@ -266,10 +291,12 @@ static void swelling_is_as_large_as_the_field_says(void **state)
  * the work is too much. */
 static void very_many_seams_are_not_all_looked_at(void **state)
 {
-    bench_compile(&b, "difference(blend = 0.1) { for (x = [0 : 99], y = [0 : 99]) translate([x, y, "
-                      "0]) cube(1); for (x = [0 : 99]) translate([x, 50, -1]) cylinder(h = 3, r = "
-                      "0.2); }");
-    check("for (x = [0 : 50]) translate([30 * x, 0, 0]) difference(blend = 1) { " PLATES HOLE " }",
+    bench_compile(
+        &b, "difference(blend = round(0.1)) { for (x = [0 : 99], y = [0 : 99]) translate([x, y, "
+            "0]) cube(1); for (x = [0 : 99]) translate([x, 50, -1]) cylinder(h = 3, r = "
+            "0.2); }");
+    check("for (x = [0 : 50]) translate([30 * x, 0, 0]) difference(blend = round(1)) { " PLATES HOLE
+          " }",
           CUTS);
 }
 
@@ -280,10 +307,10 @@ static void very_many_blends_are_not_all_looked_at(void **state)
                      CSGM_OK);
     assert_true(bench_has(&b, SWELLS));
     /* one that takes long to ask is not asked */
-    check(
-        "union(blend = 1) for (k = [0 : 63]) translate([3 * k, 0, 0]) union() for (i = [0 : 300]) "
-        "translate([rands(0, 0.5, 1)[0], i * 0.001, 0]) cube([3.5, 10, 10]);",
-        0);
+    check("union(blend = round(1)) for (k = [0 : 63]) translate([3 * k, 0, 0]) union() for (i = [0 "
+          ": 300]) "
+          "translate([rands(0, 0.5, 1)[0], i * 0.001, 0]) cube([3.5, 10, 10]);",
+          0);
 }
 
 static int open_bench(void **state)

@@ -160,13 +160,13 @@ static void blends_reach_their_operators(void **state)
     check("union(blend = 2) { plane([1, 0, 0], 0); plane([0, 1, 0], 0); }", at, at, 0, 0);
     check("union(blend = round(2)) { plane([1, 0, 0], 0); plane([0, 1, 0], 0); }", at, at, 0, 0);
     check_same("union(blend = round(2.5)) { sphere(2); translate([2, 0, 0]) sphere(2); }",
-               "union(blend = 2.5) { sphere(2); translate([2, 0, 0]) sphere(2); }");
+               "union(blend = round(r = 2.5)) { sphere(2); translate([2, 0, 0]) sphere(2); }");
     check_same(
         "f = round(r = 2.5); union(blend = f) { sphere(2); translate([2, 0, 0]) sphere(2); }",
-        "union(blend = 2.5) { sphere(2); translate([2, 0, 0]) sphere(2); }");
+        "union(blend = round(r = 2.5)) { sphere(2); translate([2, 0, 0]) sphere(2); }");
     check_same("a = true; union(blend = a ? round(2.5) : 0) { sphere(2); translate([2, 0, 0]) "
                "sphere(2); }",
-               "union(blend = 2.5) { sphere(2); translate([2, 0, 0]) sphere(2); }");
+               "union(blend = round(r = 2.5)) { sphere(2); translate([2, 0, 0]) sphere(2); }");
     check_same("union(blend = chamfer(2)) { sphere(2); translate([2, 0, 0]) sphere(2); }",
                "union(blend = chamfer(n = 1)) { sphere(2); translate([2, 0, 0]) sphere(2); }");
     check_same("union(blend = parabola(w = 2)) { sphere(2); translate([2, 0, 0]) sphere(2); }",

@@ -122,7 +122,7 @@ static void try_solid(mesh_case *m, csg_node_id solid, csg_random *random, bool 
                       tally *seen)
 {
     csg_node_id ball = posed_anyhow(m, make_sphere(m, 0.2), random);
-    const csg_blend blend = {CSG_BLEND_PARABOLA, 0.1};
+    const csg_blend blend = {CSG_BLEND_PARABOLA, 0.1, false};
     mesh_case_compile(m, joined(m, CSG_NODE_UNION, blend, solid, ball));
     try_scene(m, random, has_gradients, seen);
 }
@@ -135,7 +135,7 @@ static const csg_node_kind JOINS[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE, CSG_N
 static void try_box(uint64_t n, tally *seen)
 {
     csg_random random = {.state = seed = 41000 + n};
-    const csg_blend blend = {KINDS[n % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6)};
+    const csg_blend blend = {KINDS[n % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6), false};
     mesh_case m;
     mesh_case_begin(&m, 1);
     csg_node_id box = posed_anyhow(&m, random_box(&m, &random), &random);
@@ -169,7 +169,8 @@ static void joins_hold(void **state)
     tally seen = {0};
     for (uint64_t i = 0; i < 40 * test_times; i++) {
         csg_random random = {.state = seed = 43000 + test_first_seed + i};
-        const csg_blend blend = {KINDS[i % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6)};
+        const csg_blend blend = {KINDS[i % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6),
+                                 false};
         csg_node_id ids[3];
         mesh_case m;
         mesh_case_begin(&m, 1);
@@ -209,9 +210,10 @@ static int count_models(csg_blend blend, double beyond)
  * no pieces tell of it how large the surface is. A round does not. */
 static void blending_fillets_of_creases_have_no_models(void **state)
 {
-    assert_int_equal(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}, 0), 0);
-    assert_true(count_models((csg_blend){CSG_BLEND_FILLET, 0.5}, 0.5) > 1); /* nothing blends */
-    assert_true(count_models((csg_blend){CSG_BLEND_ROUND, 0.5}, 0) > 1);
+    assert_int_equal(count_models((csg_blend){CSG_BLEND_FILLET, 0.5, false}, 0), 0);
+    assert_true(count_models((csg_blend){CSG_BLEND_FILLET, 0.5, false}, 0.5) >
+                1); /* nothing blends */
+    assert_true(count_models((csg_blend){CSG_BLEND_ROUND, 0.5, false}, 0) > 1);
 }
 
 int main(int argc, char **argv)

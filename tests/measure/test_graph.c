@@ -241,7 +241,7 @@ static void blends_hold(void **state)
             ids[k] = posed_anyhow(&m, csg_build_primitive(&m.builder, kind, v, NOWHERE), &random);
         }
         has_fillets = KINDS[i % 5] == CSG_BLEND_FILLET;
-        csg_blend blend = {KINDS[i % 5], csg_random_uniform(&random, 0.05, 0.4)};
+        csg_blend blend = {KINDS[i % 5], csg_random_uniform(&random, 0.05, 0.4), false};
         mesh_case_compile(&m, joined(&m, JOINS[i % 3], blend, ids[0], ids[1]));
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);

@@ -127,10 +127,10 @@ static csg_node_id clean_solid(mesh_case *c, int which, csg_random *random)
     case 12:
         return joined(c, CSG_NODE_UNION, ROUND(0.2), box, moved(c, ball, 0.8, 0, 0));
     case 13:
-        return joined(c, CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.8}, ball,
+        return joined(c, CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.8, false}, ball,
                       moved(c, make_sphere(c, 0.5), 0.8, 0, 0));
     case 14:
-        return joined(c, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_CHAMFER, 0.1}, box, rod);
+        return joined(c, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_CHAMFER, 0.1, false}, box, rod);
     default:
         return make_any_primitive(c, which % 9, random);
     }

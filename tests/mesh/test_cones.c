@@ -207,9 +207,9 @@ static csg_blend any_blend(csg_random *random)
 {
     const csg_blend blends[] = {SHARP,
                                 ROUND(0.2),
-                                {CSG_BLEND_PARABOLA, 0.4},
-                                {CSG_BLEND_CHAMFER, 0.1},
-                                {CSG_BLEND_HYPERBOLA, 0.02}};
+                                {CSG_BLEND_PARABOLA, 0.4, false},
+                                {CSG_BLEND_CHAMFER, 0.1, false},
+                                {CSG_BLEND_HYPERBOLA, 0.02, false}};
     return blends[(int)csg_random_uniform(random, 0, 4.999)];
 }
 
@@ -365,7 +365,7 @@ static csg_node_id needles(mesh_case *c, csg_random *random)
     csg_node_id a = needle(c, random);
     if (csg_random_uniform(random, 0, 1) < 0.4)
         return a;
-    const csg_blend blends[] = {ROUND(0.2), {CSG_BLEND_ORTHOGONAL, 0.3}, SHARP};
+    const csg_blend blends[] = {ROUND(0.2), {CSG_BLEND_ORTHOGONAL, 0.3, false}, SHARP};
     return joined(c, csg_random_uniform(random, 0, 1) < 0.5 ? CSG_NODE_DIFFERENCE : CSG_NODE_UNION,
                   blends[(int)csg_random_uniform(random, 0, 2.999)], a, needle(c, random));
 }
@@ -411,7 +411,7 @@ static csg_node_id filleted(mesh_case *c, csg_random *random)
 {
     static const csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
                                               CSG_NODE_INTERSECTION};
-    csg_blend blend = {CSG_BLEND_FILLET, csg_random_uniform(random, 0.05, 0.6)};
+    csg_blend blend = {CSG_BLEND_FILLET, csg_random_uniform(random, 0.05, 0.6), false};
     csg_node_id pair[2];
     for (int i = 0; i < 2; i++)
         pair[i] = posed_anyhow(
@@ -582,7 +582,7 @@ static void slopes_at_zero_hold(void **state)
         csg_node_id root = csg_build_ball(&c.builder, 1, NOWHERE);
         csg_node_id other = csg_build_ball(&c.builder, 0.8, NOWHERE);
         other = csg_build_transform(&c.builder, &beside, other, NOWHERE);
-        csg_blend blend = {CSG_BLEND_ROUND, csg_random_uniform(&random, 0.1, 0.6)};
+        csg_blend blend = {CSG_BLEND_ROUND, csg_random_uniform(&random, 0.1, 0.6), false};
         mesh_case_compile(&c, joined(&c, operators[i % 3], blend, root, other));
         for (int k = 0; k < 12; k++) {
             csg_vec3 at = test_point(&random, 1.2);

@@ -81,10 +81,12 @@ csg_primitive_kind test_random_solid_kind(csg_random *random)
 csg_blend test_random_blend(csg_random *random, csg_blend_kind kind)
 {
     if (kind == CSG_BLEND_SHARP)
-        return (csg_blend){CSG_BLEND_SHARP, 0};
-    if (isinf(csg_blend_support((csg_blend){kind, 1}))) /* an area */
-        return (csg_blend){kind, uniform(random, 0.0005, 0.01)};
-    return (csg_blend){kind, csg_blend_raw(kind, uniform(random, 0.03, 0.35))};
+        return (csg_blend){CSG_BLEND_SHARP, 0, false};
+    if (isinf(csg_blend_support((csg_blend){kind, 1, false}))) /* an area */
+        return (csg_blend){kind, uniform(random, 0.0005, 0.01), false};
+    double width = csg_blend_raw(kind, uniform(random, 0.03, 0.35));
+    bool is_number = kind == CSG_BLEND_ROUND && (uint32_t)(width * 1e6) % 2; /* every other one */
+    return (csg_blend){kind, width, is_number};
 }
 
 bool test_random_rules = false;

@@ -202,8 +202,8 @@ static csg_node_id combined_wide(csg_scene_builder *builder, csg_random *random)
     csg_node_id cut[2] = {
         csg_build_combine(builder, steps, step_count, 0, operands, count, nowhere),
         csg_build_primitive(builder, CSG_NODE_BOX, half, nowhere)};
-    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0}, cut,
-                              2, nowhere);
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION,
+                              (csg_blend){CSG_BLEND_SHARP, 0, false}, cut, 2, nowhere);
 }
 
 static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
@@ -223,8 +223,8 @@ static csg_node_id combined(csg_scene_builder *builder, csg_random *random)
         return node;
     double half[4] = {1.2, 1.2, 1.2, 0}; /* of |c| no trend is known, and so no box */
     csg_node_id cut[2] = {node, csg_build_primitive(builder, CSG_NODE_BOX, half, nowhere)};
-    return csg_build_operator(builder, CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_SHARP, 0}, cut,
-                              2, nowhere);
+    return csg_build_operator(builder, CSG_NODE_INTERSECTION,
+                              (csg_blend){CSG_BLEND_SHARP, 0, false}, cut, 2, nowhere);
 }
 
 /* Its straight ends are cut: random solids are finite. */

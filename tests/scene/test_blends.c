@@ -221,7 +221,7 @@ static void test_round_definition(void **state)
 static void test_round_many_equal(void **state)
 {
     static double values[10000], partials[10000];
-    csg_blend blend = {CSG_BLEND_ROUND, 0.5};
+    csg_blend blend = {CSG_BLEND_ROUND, 0.5, false};
     double g = csg_reference_union(blend, values, 10000, partials);
     test_near(g, 0.5 * (1 - 1 / 100.0), 1e-14);
     test_near(partials[1234], 1e-4, 1e-15);
@@ -230,7 +230,7 @@ static void test_round_many_equal(void **state)
 /* Two half-spaces at a right angle: the fillet is an arc of radius w around (w, w). */
 static void test_round_is_circular(void **state)
 {
-    const csg_blend blend = {CSG_BLEND_ROUND, 0.3};
+    const csg_blend blend = {CSG_BLEND_ROUND, 0.3, false};
     for (double angle = 0.05; angle < 1.55; angle += 0.1) {
         double x = 0.3 - 0.3 * cos(angle), y = 0.3 - 0.3 * sin(angle);
         const double values[2] = {-x, -y};
@@ -241,7 +241,7 @@ static void test_round_is_circular(void **state)
 static void test_infinite_operands(void **state)
 {
     for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_FILLET; kind++) {
-        csg_blend blend = {kind, kind == CSG_BLEND_SHARP ? 0 : 0.2};
+        csg_blend blend = {kind, kind == CSG_BLEND_SHARP ? 0 : 0.2, false};
         const double one[2] = {-infinity, 0.25}, none[2] = {-infinity, -infinity};
         assert_true(united(blend, one, 2) == 0.25);
         assert_true(united(blend, none, 2) == -infinity);
@@ -270,7 +270,7 @@ static void test_slopes(void **state)
 {
     for (csg_blend_kind kind = CSG_BLEND_SHARP; kind < CSG_BLEND_FILLET; kind++)
         if (csg_blend_is_fold(kind))
-            check_slopes((csg_blend){kind, csg_blend_raw(kind, 0.7)});
+            check_slopes((csg_blend){kind, csg_blend_raw(kind, 0.7), false});
     assert_false(csg_blend_is_smooth(CSG_BLEND_SHARP));
     assert_false(csg_blend_is_smooth(CSG_BLEND_ORTHOGONAL));
 }
@@ -281,7 +281,7 @@ static void test_names_and_widths(void **state)
     test_near(csg_blend_raw(CSG_BLEND_PARABOLA, 0.5), 2, 0);
     test_near(csg_blend_raw(CSG_BLEND_HYPERBOLA, 0.5), 0.5, 0);
     for (csg_blend_kind kind = CSG_BLEND_ROUND; kind < CSG_BLEND_FILLET; kind++) {
-        double support = csg_blend_support((csg_blend){kind, csg_blend_raw(kind, 0.7)});
+        double support = csg_blend_support((csg_blend){kind, csg_blend_raw(kind, 0.7), false});
         if (support < infinity)
             test_near(support, 0.7, 1e-15);
         else

@@ -19,7 +19,7 @@
 #include "scene/primitives/kinds.h"
 #include "scene/warp_kinds.h"
 
-static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+static const csg_blend sharp = {CSG_BLEND_SHARP, 0, false};
 
 static csg_node_id primitive(csg_primitive_kind kind, double a, double b, double c, double d)
 {
@@ -104,7 +104,7 @@ static void test_half_spaces(void **state)
     check_bounds(build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1),
                                 primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25)),
                  cut);
-    check_bounds(build_operator(CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_COSINE, 0.5},
+    check_bounds(build_operator(CSG_NODE_INTERSECTION, (csg_blend){CSG_BLEND_COSINE, 0.5, false},
                                 primitive(CSG_NODE_PLANE, 0, 0, 1, 0.25), sphere(0, 0, 0, 1)),
                  cut);
     check_bounds(build_operator(
@@ -165,14 +165,14 @@ static void test_polytopes(void **state)
 
 static void test_blended_unions_grow_only_near(void **state)
 {
-    const csg_blend round = {CSG_BLEND_ROUND, 0.5};
+    const csg_blend round = {CSG_BLEND_ROUND, 0.5, false};
     check_bounds(build_operator(CSG_NODE_UNION, round, sphere(-3, 0, 0, 1), sphere(3, 0, 0, 1)),
                  (csg_box){{-4, -1, -1}, {4, 1, 1}});
     double excess = 0.5 * (1 - sqrt(0.5));
     csg_node_id same =
         build_operator(CSG_NODE_UNION, round, sphere(0, 0, 0, 1), sphere(0, 0, 0, 1));
     check_bounds(same, cube(1 + excess));
-    check_bounds(build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_HYPERBOLA, 0.04},
+    check_bounds(build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_HYPERBOLA, 0.04, false},
                                 sphere(0, 0, 0, 1), sphere(0, 0, 0, 1)),
                  cube(1.1));
 }
@@ -459,12 +459,12 @@ static void test_worked_example(void **state)
     csg_node_id box =
         csg_build_transform(&builder, &move, primitive(CSG_NODE_BOX, 0.5, 0.3, 0.4, 0), NOWHERE);
     csg_node_id both =
-        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
+        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2, false}, cut, box);
     csg_node_id bar = csg_build_capsule(&builder, csg_vec3_make(0, -1, 0),
                                         csg_vec3_make(0, 1.5, 0.2), 0.2, 0.2, NOWHERE);
     csgm_scene *scene =
-        test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_COSINE, 0.4},
-                                           both, bar));
+        test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE,
+                                           (csg_blend){CSG_BLEND_COSINE, 0.4, false}, both, bar));
     csg_node_bounds b[16];
     assert_true(scene->node_count <= 16);
     assert_int_equal(csg_bounds_compute(scene, 0.01, b), CSGM_OK);

@@ -50,8 +50,8 @@ static csg_node_id operate(csg_node_kind kind, csg_blend blend, csg_node_id a, c
     return csg_build_operator(&f.builder, kind, blend, children, count, NOWHERE);
 }
 
-static const csg_blend sharp = {CSG_BLEND_SHARP, 0}, rounded = {CSG_BLEND_ROUND, 0.5},
-                       cosine = {CSG_BLEND_COSINE, 0.5};
+static const csg_blend sharp = {CSG_BLEND_SHARP, 0, false}, rounded = {CSG_BLEND_ROUND, 0.5, false},
+                       cosine = {CSG_BLEND_COSINE, 0.5, false};
 
 /* "union(sphere, sphere)" of a small scene; primitives with their first parameter. */
 static void describe(const csgm_scene *scene, csg_node_id id, char *text, size_t size)
@@ -329,7 +329,7 @@ static void test_bad_blends_and_colors(void **state)
 {
     const double widths[] = {NAN, -1, INFINITY, 1e300};
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
-        csg_blend blend = {CSG_BLEND_ROUND, widths[i]};
+        csg_blend blend = {CSG_BLEND_ROUND, widths[i], false};
         operate(CSG_NODE_UNION, blend, sphere(1), sphere(2), CSG_NODE_NONE);
         check_refused(CSGM_ERR_SCENE);
     }
@@ -337,7 +337,7 @@ static void test_bad_blends_and_colors(void **state)
     check_refused(CSGM_ERR_SCENE);
     csg_build_color(&f.builder, (csg_color){0, 0, NAN, 1}, sphere(1), NOWHERE);
     check_refused(CSGM_ERR_SCENE);
-    csg_blend none = {CSG_BLEND_ROUND, 0};
+    csg_blend none = {CSG_BLEND_ROUND, 0, false};
     check_tree(operate(CSG_NODE_UNION, none, sphere(1), sphere(2), CSG_NODE_NONE),
                "union(sphere 1, sphere 2)");
 }

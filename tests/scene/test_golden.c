@@ -22,7 +22,7 @@ static csg_blend_kind blend_of(const char *k)
 static void check_function(const row *r)
 {
     double value, derivative;
-    csg_blend blend = {blend_of(r->fields[1]), number(r->fields[3])};
+    csg_blend blend = {blend_of(r->fields[1]), number(r->fields[3]), false};
     csg_reference_blend_function(blend, number(r->fields[2]), &value, &derivative);
     test_near(value, number(r->fields[4]), tolerance);
     test_near(derivative, number(r->fields[5]), tolerance);
@@ -36,7 +36,7 @@ static void test_blend_functions(void **state)
 static void check_operator(const row *r)
 {
     char kind = r->fields[1][0];
-    csg_blend blend = {blend_of(r->fields[2]), number(r->fields[5])};
+    csg_blend blend = {blend_of(r->fields[2]), number(r->fields[5]), false};
     double first = kind == 'U' ? 1 : -1, second = kind == 'I' ? -1 : 1, outer = first;
     double values[2] = {first * number(r->fields[3]), second * number(r->fields[4])}, partials[2];
     double value = outer * csg_reference_union(blend, values, 2, partials);
@@ -54,7 +54,7 @@ static void check_round(const row *r)
 {
     double values[8], expected[8], partials[8];
     int count = split_numbers(r->fields[2], values);
-    csg_blend blend = {CSG_BLEND_ROUND, number(r->fields[1])};
+    csg_blend blend = {CSG_BLEND_ROUND, number(r->fields[1]), false};
     test_near(csg_reference_union(blend, values, (size_t)count, partials), number(r->fields[3]),
               tolerance);
     assert_int_equal(split_numbers(r->fields[4], expected), count);

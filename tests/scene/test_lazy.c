@@ -15,7 +15,7 @@
 #include "scene/lazy/lazy_private.h"
 #include "scene/primitives/kinds.h"
 
-static const csg_blend sharp = {CSG_BLEND_SHARP, 0};
+static const csg_blend sharp = {CSG_BLEND_SHARP, 0, false};
 
 static csg_node_id primitive(csg_primitive_kind kind, double a, double b, double c, double d)
 {
@@ -95,10 +95,11 @@ static csgm_scene *worked_example(void)
                                      sphere(0.4, 0, 0, 0.8));
     csg_node_id box = moved(0.2, 0.9, 0, primitive(CSG_NODE_BOX, 0.5, 0.3, 0.4, 0));
     csg_node_id both =
-        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2}, cut, box);
+        build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 1.2, false}, cut, box);
     csg_node_id bar = capsule(csg_vec3_make(0, -1, 0), csg_vec3_make(0, 1.5, 0.2), 0.2);
-    return test_seal(&builder, build_operator(CSG_NODE_DIFFERENCE,
-                                              (csg_blend){CSG_BLEND_COSINE, 0.4}, both, bar));
+    return test_seal(
+        &builder,
+        build_operator(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_COSINE, 0.4, false}, both, bar));
 }
 
 typedef struct named_nodes {
@@ -204,7 +205,7 @@ static void test_counts_of_the_worked_example(void **state)
 /* A ball far below the surface of a box, blended with it where it is cut to the ball's box. */
 static void test_shared_boxes_blend_too_much(void **state)
 {
-    csg_blend soft = {CSG_BLEND_PARABOLA, 1.2};
+    csg_blend soft = {CSG_BLEND_PARABOLA, 1.2, false};
     csgm_scene *scene =
         test_seal(&builder, build_operator(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 0.1),
                                            primitive(CSG_NODE_BOX, 5, 5, 5, 0)));
@@ -220,7 +221,7 @@ static void test_own_boxes_blend_too_little(void **state)
 {
     csg_node_id none =
         build_operator(CSG_NODE_INTERSECTION, sharp, sphere(0, 0, 0, 1), sphere(2.02, 0, 0, 1));
-    csg_blend soft = {CSG_BLEND_PARABOLA, 1.2};
+    csg_blend soft = {CSG_BLEND_PARABOLA, 1.2, false};
     csgm_scene *scene =
         test_seal(&builder, build_operator(CSG_NODE_UNION, soft, none, sphere(1.01, 0.3, 0, 0.25)));
     csg_vec3 p = {1.01, 0.03, 0};
@@ -422,7 +423,7 @@ static csg_node_id steep_field(void)
 
 static void test_steep_fields(void **state)
 {
-    csg_blend soft = {CSG_BLEND_PARABOLA, 0.8};
+    csg_blend soft = {CSG_BLEND_PARABOLA, 0.8, false};
     csg_node_id cut =
         build_operator(CSG_NODE_INTERSECTION, soft, sphere(0, 0, 0, 1), steep_field());
     csg_node_id bitten =
@@ -503,7 +504,7 @@ static void test_long_operators_are_grouped(void **state)
 {
     check_many(CSG_NODE_UNION, sharp, 200);
     check_many(CSG_NODE_DIFFERENCE, sharp, 200);
-    check_many(CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.1}, 200);
+    check_many(CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.1, false}, 200);
 }
 
 /* Colours do not stand between unions, and nested ones are grouped together. */
@@ -557,7 +558,7 @@ static void test_deep_trees(void **state)
 {
     csg_node_id chain = sphere(0, 0, 0, 0.6);
     for (int i = 1; i < 5000; i++)
-        chain = build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.4}, chain,
+        chain = build_operator(CSG_NODE_UNION, (csg_blend){CSG_BLEND_PARABOLA, 0.4, false}, chain,
                                sphere(i, 0, 0, 0.6));
     csgm_scene *scene = test_seal(&builder, chain);
     evaluator e = evaluator_of(scene, true, CSG_LAZY_OWN_BOXES, 0);

@@ -43,7 +43,7 @@ static void check_pair(csg_node_kind kind, csg_vec3 p, double value, csg_vec3 gr
 {
     csg_build_abandon(&builder);
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
-    csgm_scene *scene = pair(kind, (csg_blend){CSG_BLEND_SHARP, 0});
+    csgm_scene *scene = pair(kind, (csg_blend){CSG_BLEND_SHARP, 0, false});
     csg_sample s = test_sample(scene, p);
     test_near(s.value, value, 1e-15);
     test_near_vec3(s.gradient, gradient, 1e-15);
@@ -164,14 +164,14 @@ static uint32_t active_at(const csgm_scene *scene, csg_vec3 p)
 
 static void test_active_by_hand(void **state)
 {
-    csgm_scene *scene = pair(CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.25});
+    csgm_scene *scene = pair(CSG_NODE_UNION, (csg_blend){CSG_BLEND_ROUND, 0.25, false});
     assert_int_equal(active_at(scene, csg_vec3_make(0.5, 0, 0)), 2);
     assert_int_equal(active_at(scene, csg_vec3_make(0.4, 0, 0)), 2); /* 0.2 apart */
     assert_int_equal(active_at(scene, csg_vec3_make(0.3, 0, 0)), 1); /* 0.4 apart */
     assert_int_equal(active_at(scene, csg_vec3_make(-5, 0, 0)), 1);
     csg_scene_destroy(scene);
     assert_int_equal(csg_build_begin(&builder, &context), CSGM_OK);
-    scene = pair(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_HYPERBOLA, 0.01});
+    scene = pair(CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_HYPERBOLA, 0.01, false});
     assert_int_equal(active_at(scene, csg_vec3_make(-50, 0, 0)), 2); /* no finite support */
     csg_scene_destroy(scene);
 }
@@ -207,9 +207,10 @@ static void test_large_scene_and_no_memory(void **state)
     csg_node_id nodes[1000];
     for (int i = 0; i < 1000; i++)
         nodes[i] = moved(3 * i, primitive(CSG_NODE_SPHERE, 1, 0, 0, 0));
-    csgm_scene *scene = test_seal(&builder, csg_build_operator(&builder, CSG_NODE_UNION,
-                                                               (csg_blend){CSG_BLEND_ROUND, 0.5},
-                                                               nodes, 1000, NOWHERE));
+    csgm_scene *scene =
+        test_seal(&builder, csg_build_operator(&builder, CSG_NODE_UNION,
+                                               (csg_blend){CSG_BLEND_ROUND, 0.5, false}, nodes,
+                                               1000, NOWHERE));
     test_near(test_sample(scene, csg_vec3_make(3 * 700, 0.25, 0)).value, 0.75, 1e-15);
     context.memory.limit_bytes = 1000;
     csgm_status status = CSGM_OK;

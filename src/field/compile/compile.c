@@ -195,6 +195,8 @@ static void mark_join(compiler *c, task *group)
     }
     if (csg_blend_is_fillet(group->blend.kind))
         node->join_parameters = csg_compile_reaches(c, group);
+    bool is_end = group->written && c->scene->nodes[group->node].flags & CSG_FLAG_ENDED;
+    node->is_plane |= is_end && c->scene->look_count > 0;
     group->written++;
 }
 
@@ -367,7 +369,8 @@ static bool begin_operator(compiler *c, const csg_node *node, uint32_t outer, ta
     if (rule)
         return begin_rule(c, node, rule, t);
     const task *above = outer != UINT32_MAX ? &c->tasks[outer] : NULL;
-    bool is_nested = csg_blend_is_sharp(t->blend.kind) && is_alike(c, above, t->is_union);
+    bool is_nested = csg_blend_is_sharp(t->blend.kind) && !(node->flags & CSG_FLAG_ENDED) &&
+                     is_alike(c, above, t->is_union);
     if (is_nested) {
         t->group = outer; /* max of max, min of min: one operator */
         return true;

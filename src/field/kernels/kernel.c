@@ -373,7 +373,7 @@ static inline void join_mixed(const csg_tape *tape, const csg_tape_node *node, k
         mix(channel(s, depth, index, c), channel(s, depth, index + 1, c), share, count);
     if (wanted.colors && smooth)
         in_proportion(share, count);
-    for (int c = wanted.gradients; c < channels_of(wanted); c++)
+    for (int c = wanted.gradients; c < channels_of(wanted) && !node->is_plane; c++)
         mix(channel(s, depth, index, c), channel(s, depth, index + 1, c), share, count);
     if (node->join_blend == CSG_BLEND_ORTHOGONAL)
         for (int c = 0; c < wanted.gradients; c++)

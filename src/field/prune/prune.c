@@ -298,6 +298,7 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
     float *upper = is_union ? pruner->high : pruner->low;
     uint32_t best_child[CSG_OCTANTS], child = node - 1 - op->planes;
     float child_low[CSG_OCTANTS], child_high[CSG_OCTANTS];
+    bool has_colors = !op->planes && nodes[node - 1].is_plane; /* those of what ends there */
     find_best(nodes, node, lower, turn, threshold, best_child);
     for (int o = 0; o < CSG_OCTANTS; o++) {
         float demand = is_union ? demand_low[o] : -demand_high[o];
@@ -312,8 +313,9 @@ static void decide_operands(csg_pruner *pruner, uint32_t node, const float *dema
             child_high[o] = fmaxf(child_high[o], -edge);
     }
     for (uint32_t k = op->planes; k < op->arity; k++, child -= nodes[child].size) {
-        uint8_t mask =
-            pruner->dropped[node] | below(lanes(upper, child), turn, threshold, child, best_child);
+        uint8_t mask = pruner->dropped[node];
+        if (!has_colors || nodes[child].is_plane)
+            mask |= below(lanes(upper, child), turn, threshold, child, best_child);
         pruner->dropped[child] = mask;
         pruner->dropped_any |= mask;
         set_demand(pruner, child, child_low, child_high);

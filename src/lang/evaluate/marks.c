@@ -25,7 +25,7 @@ void csg_marks_add(csg_eval *e, size_t first_part, csgm_mark kind, csg_span wher
 /* NONE of none. */
 static csg_node_id unite_nodes(csg_eval *e, const csg_node_id *nodes, size_t count, csg_span where)
 {
-    const csg_blend sharp = {0, 0};
+    const csg_blend sharp = CSG_SHARP;
     if (count < 2)
         return count ? nodes[0] : CSG_NODE_NONE;
     return csg_check_node(

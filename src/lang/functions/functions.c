@@ -209,6 +209,14 @@ csg_value csg_evaluate_blend(csg_eval *e, const csg_expression *x, csg_frame *fr
         x = csg_value_is_true(condition) ? x->as.branch.then : x->as.branch.other;
         csg_value_release(&e->heap, condition);
     }
-    return is_round_call(e, x, frame) ? csg_evaluate(e, x->as.call.arguments.items[0].value, frame)
-                                      : csg_evaluate(e, x, frame);
+    if (!is_round_call(e, x, frame))
+        return csg_evaluate(e, x, frame);
+    csg_value value = csg_evaluate(e, x->as.call.arguments.items[0].value, frame);
+    bool blends =
+        value.kind == CSG_VALUE_NUMBER && value.as.number > 0 && isfinite(value.as.number);
+    if (blends) { /* whatever else it is, is told of as the argument of a module */
+        value.kind = CSG_VALUE_BLEND;
+        value.blend = CSG_BLEND_ROUND;
+    }
+    return value;
 }

@@ -147,7 +147,7 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
     const csg_blend sharp = CSG_SHARP;
     csg_value value = call->values[index];
     if (value.kind == CSG_VALUE_BLEND)
-        return (csg_blend){value.blend, value.as.number};
+        return (csg_blend){value.blend, value.as.number, false};
     if (value.kind == CSG_VALUE_RULE)
         return csg_rule_blend(call, index);
     if (value.kind != CSG_VALUE_UNDEF && value.kind != CSG_VALUE_NUMBER) {
@@ -162,7 +162,7 @@ csg_blend csg_argument_blend(csg_module_call *call, uint32_t index)
         return sharp;
     }
     double r = csg_argument_number(call, index, 0, CSG_NOT_NEGATIVE);
-    return r > 0 ? csg_blend_round(r) : sharp;
+    return r > 0 ? csg_blend_number(r) : sharp;
 }
 
 csg_node_id csg_module_children(csg_module_call *call)

@@ -6,7 +6,7 @@
 #include "base/scene_codes.h"
 #include "lang/modules/modules.h"
 
-static const csg_blend sharp = {0, 0};
+static const csg_blend sharp = {.kind = 0};
 
 /* ---- for
  * ----------------------------------------------------------------------------------------- */

@@ -36,6 +36,14 @@ static void warn(void *user, const csg_joint *joint)
                         joint->amount, axis, joint->at);
         break;
     case CSG_JOINT_MISSES:
+        if (csg_node_is_idle(joint->node)) {
+            snprintf(hint, sizeof hint,
+                     "blend = round(%g) also joins solids that are nearer than it", blend.n);
+            csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, hint,
+                            "the blend joins nothing: no two of its solids%s meet",
+                            joint->node->kind == CSG_NODE_UNION ? "" : "' surfaces");
+            break;
+        }
         csg_eval_report(r->e, CSG_DIAG_UNUSED_BLEND, joint->node->where, is_near ? hint : NULL,
                         "the blend joins nothing: its solids%s are %.3g apart",
                         joint->node->kind == CSG_NODE_UNION ? "" : "' surfaces", joint->amount);

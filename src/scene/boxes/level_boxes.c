@@ -111,7 +111,7 @@ static void union_levels(const csgm_scene *scene, const csg_node *node, double *
         *support = p->support + *excess;
         return;
     }
-    bool adds = !csg_blend_is_interior(node->blend) && !csg_blend_is_fillet(node->blend);
+    bool adds = !csg_blend_is_interior(node->blend) && !csg_node_ends_flush(node);
     *excess = adds ? csg_scene_excess(scene, node) : 0;
     *support = adds ? csg_scene_support(scene, node) : 0;
 }
@@ -186,7 +186,7 @@ static void ask(const csgm_scene *scene, const csg_node *node, uint32_t index, d
         add_level(list, inner_level(scene, node, level));
     } else if (acts_as(scene, node) == CSG_NODE_UNION) {
         union_levels(scene, node, &excess, &support);
-        if (csg_blend_is_fillet(node->blend))
+        if (csg_node_ends_flush(node))
             add_level(list, 0);
         add_level(list, level);
         add_level(list, level + excess);
@@ -304,7 +304,7 @@ static csg_box union_box(const table *t, const csg_node *node, double level)
     union_levels(t->scene, node, &excess, &support);
     csg_box box = csg_box_empty();
     bool pairs = support > 0 && count <= MOST_PAIRED;
-    if (csg_blend_is_fillet(node->blend))
+    if (csg_node_ends_flush(node))
         return filleted_box(t, node, level);
     for (uint32_t i = 0; i < count; i++)
         box = csg_box_hull(box, box_at(t, children[i], pairs ? level : level + excess));
@@ -399,8 +399,7 @@ static csg_box fields_box(const table *t, const csg_node *node, double level)
  * fillets, which end at the sides of a box in their own. */
 static bool is_opaque(const csg_node *node)
 {
-    return node->kind == CSG_NODE_WARP ||
-           (node->kind == CSG_NODE_UNION && csg_blend_is_fillet(node->blend)) ||
+    return node->kind == CSG_NODE_WARP || csg_node_ends_flush(node) ||
            (csg_node_is_operator(node->kind) && csg_blend_is_orthogonal(node->blend));
 }
 

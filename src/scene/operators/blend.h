@@ -13,11 +13,13 @@
  * is its index among the rules of the scene or of the builder. */
 typedef struct csg_blend {
     uint32_t kind; /* csg_blend_kind */
-    double n; /* > 0; 0 for SHARP and ORTHOGONAL. HYPERBOLA and RECIPROCAL: area, else length */
+    double n; /* > 0; 0 for ORTHOGONAL and, but for idle nodes, for SHARP. HYPERBOLA and RECIPROCAL:
+                 area, else length */
+    bool is_number; /* ROUND: solids that meet blend, and end flush (tree/numbers.h) */
 } csg_blend;
 
 /* max and min, the first kind. */
-#define CSG_SHARP ((csg_blend){0, 0})
+#define CSG_SHARP ((csg_blend){0, 0, false})
 
 static inline bool csg_blend_is_sharp(uint32_t kind)
 {
@@ -25,6 +27,8 @@ static inline bool csg_blend_is_sharp(uint32_t kind)
 }
 /* The two blends that are made without being asked for by name; widths > 0. */
 csg_blend csg_blend_round(double width);
+/* What a number means. */
+csg_blend csg_blend_number(double radius);
 csg_blend csg_blend_fillet(double radius);
 bool csg_blend_is_round(uint32_t kind);
 bool csg_blend_is_profile(uint32_t kind);

@@ -22,14 +22,19 @@ static const blend_row blends[CSG_BLEND_COUNT] = {
 #include "scene/operators/operators.def"
 };
 
+csg_blend csg_blend_number(double radius)
+{
+    return (csg_blend){CSG_BLEND_ROUND, radius, true};
+}
+
 csg_blend csg_blend_round(double width)
 {
-    return (csg_blend){CSG_BLEND_ROUND, width};
+    return (csg_blend){CSG_BLEND_ROUND, width, false};
 }
 
 csg_blend csg_blend_fillet(double radius)
 {
-    return (csg_blend){CSG_BLEND_FILLET, radius};
+    return (csg_blend){CSG_BLEND_FILLET, radius, false};
 }
 
 bool csg_blend_is_round(uint32_t kind)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Solids of a fillet that do not meet; see fillet_apart.h.
+ * Solids of a blend that do not meet; see fillet_apart.h.
  */
 #include "scene/operators/fillet_apart.h"
 
@@ -12,8 +12,8 @@
 
 enum {
     MOST_LOOKS = 20000,    /* at one pair */
-    MOST_WORK = 400000,    /* nodes asked, of one fillet */
-    MOST_IN_ALL = 8000000, /* of all fillets of a scene */
+    MOST_WORK = 400000,    /* nodes asked, of one blend */
+    MOST_IN_ALL = 8000000, /* of all of a scene */
     MOST_SPLITS = 96,      /* of a cube, until it is as small as rounding */
     FEW = 64               /* operands: all pairs are looked at, else those with boxes in reach */
 };
@@ -21,13 +21,10 @@ enum {
 /* Of the size of both: solids that are nearer touch. */
 static const double SAME = 1e-9;
 
-typedef struct pair {
-    uint32_t a, b;
-    bool by_boxes; /* these are apart */
-} pair;
+typedef csg_apart_pair pair;
 
 typedef struct search {
-    csgm_scene *scene;
+    const csgm_scene *scene;
     csg_memory *memory;
     csg_reference_room room;
     /* per node: the first one below it, what it takes to ask it with those, whether its values have
@@ -36,16 +33,13 @@ typedef struct search {
     uint64_t *costs;
     bool *is_steady;
     double *slopes;
-    /* of the fillet at hand */
+    /* of the blend at hand */
     const csg_node *node;
     const csg_node_id *children;
     double radius;
     pair *pairs;
     size_t pair_count, pair_capacity;
-    /* of all */
     uint64_t most_work;
-    uint32_t *made;
-    size_t made_count, made_capacity;
 } search;
 
 /* Intersections are unions of what is left out, and so is the first operand of a difference. */
@@ -219,8 +213,9 @@ static bool can_be_told(const search *s, const pair *p)
     return s->is_steady[s->children[p->a]] && s->is_steady[s->children[p->b]];
 }
 
-/* Leaves those pairs that do not meet; *gap: the least between them, INFINITY where some meet. */
-static void keep_apart(search *s, double *gap)
+/* Moves the pairs that do not meet to the front; returns how many. *gap: the least between them,
+ * INFINITY where some meet. */
+static size_t keep_apart(search *s, double *gap)
 {
     uint64_t work = 0;
     size_t kept = 0, count = s->pair_count;
@@ -239,59 +234,14 @@ static void keep_apart(search *s, double *gap)
             all = false;
             continue;
         }
+        s->pairs[i] = s->pairs[kept];
         s->pairs[kept++] = p;
     }
-    s->pair_count = kept;
     *gap = all ? *gap : INFINITY;
+    return kept;
 }
 
-/* ---- all fillets ------------------------------------------------------------------------------- */
-
-/* Rows of the operands, as csg_fillet_planes has them. */
-static bool write_rows(search *s, double *first)
-{
-    uint32_t count = s->node->child_count;
-    size_t size = count + 1 + 2 * s->pair_count;
-    void *made = s->made;
-    if (!csg_memory_reserve(s->memory, &made, &s->made_capacity, s->made_count + size,
-                            sizeof *s->made))
-        return false;
-    s->made = made;
-    uint32_t *rows = s->made + s->made_count;
-    memset(rows, 0, size * sizeof *rows);
-    for (size_t i = 0; i < s->pair_count; i++) {
-        rows[s->pairs[i].a]++;
-        rows[s->pairs[i].b]++;
-    }
-    uint32_t at = count + 1;
-    for (uint32_t k = 0; k <= count; k++) { /* where each row ends, for now */
-        at += k < count ? rows[k] : 0;
-        rows[k] = at;
-    }
-    for (size_t i = s->pair_count; i-- > 0;) {
-        rows[--rows[s->pairs[i].a]] = s->pairs[i].b;
-        rows[--rows[s->pairs[i].b]] = s->pairs[i].a;
-    }
-    *first = 1 + (double)s->made_count;
-    s->made_count += size;
-    return true;
-}
-
-static bool look_at(search *s, size_t id)
-{
-    const csgm_scene *scene = s->scene;
-    double *v = s->scene->parameters + scene->nodes[id].payload, gap;
-    s->node = &scene->nodes[id];
-    s->children = csg_scene_children(scene, s->node);
-    s->radius = v[CSG_FILLET_N];
-    if (!find_pairs(s))
-        return false;
-    size_t pairs = s->pair_count;
-    keep_apart(s, &gap);
-    bool knows_all = s->node->kind == CSG_NODE_UNION && s->node->child_count <= FEW;
-    v[CSG_FILLET_APART_BY] = knows_all && pairs == s->pair_count && isfinite(gap) ? gap : 0;
-    return !s->pair_count || write_rows(s, &v[CSG_FILLET_APART]);
-}
+/* ---- all blends -------------------------------------------------------------------------------- */
 
 /* From the leaves up. */
 static void look_below(search *s)
@@ -311,39 +261,42 @@ static void look_below(search *s)
     }
 }
 
-static bool keep(search *s)
+static bool look_at(search *s, csg_node_id id, csg_apart_take *take, void *user)
 {
-    if (!s->made_count)
-        return true;
-    s->scene->apart = csg_arena_calloc(&s->scene->arena, s->made_count, sizeof *s->made);
-    if (s->scene->apart)
-        memcpy(s->scene->apart, s->made, s->made_count * sizeof *s->made);
-    return s->scene->apart != NULL;
+    const csgm_scene *scene = s->scene;
+    s->node = &scene->nodes[id];
+    s->children = csg_scene_children(scene, s->node);
+    s->radius = csg_scene_blend(scene, s->node).n;
+    if (!find_pairs(s))
+        return false;
+    csg_apart found = {.id = id, .count = s->pair_count};
+    found.apart = keep_apart(s, &found.gap);
+    found.pairs = s->pairs;
+    if (s->node->child_count > FEW) /* others may be nearer than the pairs looked at */
+        found.gap = INFINITY;
+    return take(user, &found);
 }
 
-static bool look_at_all(search *s, uint64_t fillets)
+static bool look_at_all(search *s, uint64_t blends, bool (*is_wanted)(const csg_node *node),
+                        csg_apart_take *take, void *user)
 {
-    csgm_scene *scene = s->scene;
-    s->most_work = MOST_IN_ALL / fillets < MOST_WORK ? MOST_IN_ALL / fillets : MOST_WORK;
+    s->most_work = MOST_IN_ALL / blends < MOST_WORK ? MOST_IN_ALL / blends : MOST_WORK;
     look_below(s);
-    for (size_t i = 0; i < scene->node_count; i++)
-        if (csg_node_is_fillet(&scene->nodes[i]) && !look_at(s, i))
+    for (size_t i = 0; i < s->scene->node_count; i++)
+        if (is_wanted(&s->scene->nodes[i]) && !look_at(s, (csg_node_id)i, take, user))
             return false;
-    return keep(s);
+    return true;
 }
 
-csgm_status csg_fillet_apart_find(csgm_scene *scene)
+csgm_status csg_apart_find(const csgm_scene *scene, bool (*is_wanted)(const csg_node *node),
+                           csg_apart_take *take, void *user)
 {
     csg_memory *memory = &scene->context->memory;
     size_t count = scene->node_count;
-    uint64_t fillets = 0;
+    uint64_t blends = 0;
     for (size_t i = 0; i < count; i++)
-        if (csg_node_is_fillet(&scene->nodes[i])) {
-            double *v = scene->parameters + scene->nodes[i].payload;
-            v[CSG_FILLET_APART] = v[CSG_FILLET_APART_BY] = 0;
-            fillets++;
-        }
-    if (!fillets)
+        blends += is_wanted(&scene->nodes[i]);
+    if (!blends)
         return CSGM_OK;
     search s = {.scene = scene, .memory = memory};
     s.firsts = csg_memory_alloc(memory, count * sizeof *s.firsts);
@@ -353,7 +306,7 @@ csgm_status csg_fillet_apart_find(csgm_scene *scene)
     bool done =
         s.firsts && s.costs && s.is_steady && s.slopes && csg_reference_room_begin(&s.room, scene);
     if (done) {
-        done = look_at_all(&s, fillets);
+        done = look_at_all(&s, blends, is_wanted, take, user);
         csg_reference_room_end(&s.room, scene);
     }
     csg_memory_release(memory, s.firsts, count * sizeof *s.firsts);
@@ -361,6 +314,68 @@ csgm_status csg_fillet_apart_find(csgm_scene *scene)
     csg_memory_release(memory, s.is_steady, count * sizeof *s.is_steady);
     csg_memory_release(memory, s.slopes, count * sizeof *s.slopes);
     csg_memory_release(memory, s.pairs, s.pair_capacity * sizeof *s.pairs);
-    csg_memory_release(memory, s.made, s.made_capacity * sizeof *s.made);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+/* ---- fillets ----------------------------------------------------------------------------------- */
+
+typedef struct rows {
+    csgm_scene *scene;
+    uint32_t *made;
+    size_t count, capacity;
+} rows;
+
+/* Rows of the operands, as csg_fillet_planes has them. */
+static bool write_rows(rows *r, const csg_apart *found, double *first)
+{
+    uint32_t count = r->scene->nodes[found->id].child_count;
+    size_t size = count + 1 + 2 * found->apart;
+    void *made = r->made;
+    if (!csg_memory_reserve(&r->scene->context->memory, &made, &r->capacity, r->count + size,
+                            sizeof *r->made))
+        return false;
+    r->made = made;
+    uint32_t *row = r->made + r->count;
+    memset(row, 0, size * sizeof *row);
+    for (size_t i = 0; i < found->apart; i++) {
+        row[found->pairs[i].a]++;
+        row[found->pairs[i].b]++;
+    }
+    uint32_t at = count + 1;
+    for (uint32_t k = 0; k <= count; k++) { /* where each row ends, for now */
+        at += k < count ? row[k] : 0;
+        row[k] = at;
+    }
+    for (size_t i = found->apart; i-- > 0;) {
+        row[--row[found->pairs[i].a]] = found->pairs[i].b;
+        row[--row[found->pairs[i].b]] = found->pairs[i].a;
+    }
+    *first = 1 + (double)r->count;
+    r->count += size;
+    return true;
+}
+
+static bool take_fillet(void *user, const csg_apart *found)
+{
+    rows *r = user;
+    const csg_node *node = &r->scene->nodes[found->id];
+    double *v = r->scene->parameters + node->payload;
+    bool all = node->kind == CSG_NODE_UNION && found->apart == found->count;
+    v[CSG_FILLET_APART] = 0;
+    v[CSG_FILLET_APART_BY] = all && isfinite(found->gap) ? found->gap : 0;
+    return !found->apart || write_rows(r, found, &v[CSG_FILLET_APART]);
+}
+
+csgm_status csg_fillet_apart_find(csgm_scene *scene)
+{
+    rows r = {.scene = scene};
+    csgm_status status = csg_apart_find(scene, csg_node_is_fillet, take_fillet, &r);
+    if (status == CSGM_OK && r.count) {
+        scene->apart = csg_arena_calloc(&scene->arena, r.count, sizeof *r.made);
+        status = scene->apart ? CSGM_OK : CSGM_ERR_MEMORY;
+    }
+    if (status == CSGM_OK && r.count)
+        memcpy(scene->apart, r.made, r.count * sizeof *r.made);
+    csg_memory_release(&scene->context->memory, r.made, r.capacity * sizeof *r.made);
+    return status;
 }

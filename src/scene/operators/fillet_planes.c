@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Supporting half-spaces of a fillet's operands; see fillet_planes.h. Their normals are those of
- * the axes of every leaf below and of the fillet's own frame: faces of boxes, caps of cylinders,
+ * Supporting half-spaces of a union's operands; see fillet_planes.h. Their normals are those of
+ * the axes of every leaf below and of the union's own frame: faces of boxes, caps of cylinders,
  * slabs and extrusions are among them. How far the operands reach along a normal is found from the
  * leaves up, by their support functions and by the boxes of all nodes: never too little. Sorted, so
  * that the order of the operands does not matter. Those of the faces of polyhedra and outlines that
@@ -18,18 +18,20 @@
 
 enum {
     AXES = 6,             /* both sides of each */
-    MOST_PLANES = 24,     /* of one fillet */
+    MOST_PLANES = 24,     /* of one union */
     MOST_AXES = 8,        /* the same */
     MOST_FACES = 16,      /* directions of a shape that is looked at: above it, it is round */
     MOST_WORK = 20000000, /* nodes times normals; above it the frame's own axes only */
 };
 
 typedef struct search {
-    csgm_scene *scene;
+    const csgm_scene *scene;
     csg_arena *scratch;
-    csg_node_id root, first; /* the fillet, and the first node below it */
-    /* per node from `first` on */
-    csg_affine *to_own; /* from the fillet's frame */
+    csg_node_id root;  /* the union */
+    csg_node_id *seen; /* it and what is looked at below it, parents before children */
+    size_t seen_count;
+    /* per node; filled in for those seen */
+    csg_affine *to_own; /* from the union's frame */
     bool *is_placed;    /* to_own is known: no warp stands between */
     csg_vec3 *normals;
     double *reaches;
@@ -38,10 +40,10 @@ typedef struct search {
     size_t found_count, found_capacity, axes_count; /* the latter: not of shapes' faces */
     csg_fillet_end axes[MOST_AXES];
     size_t axis_count;
-    /* of all fillets so far */
+    /* of the union at hand */
     csg_fillet_end *made;
     double *reached;
-    size_t made_count, made_capacity, reached_count, reached_capacity;
+    size_t made_capacity, reached_capacity;
 } search;
 
 /* ---- normals ---------------------------------------------------------------------------------- */
@@ -165,6 +167,23 @@ static bool add_faces(search *s, const csg_node *node, const csg_affine *to_own)
     return true;
 }
 
+/* A union that a blend makes larger reaches as far as its box: who asks sees no farther. */
+static bool adds(const csg_node *node)
+{
+    return node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
+}
+
+static void see_all(search *s)
+{
+    s->seen_count = 0;
+    s->seen[s->seen_count++] = s->root;
+    for (size_t at = 0; at < s->seen_count; at++) {
+        const csg_node *node = &s->scene->nodes[s->seen[at]];
+        for (uint32_t k = 0; k < node->child_count && (at == 0 || !adds(node)); k++)
+            s->seen[s->seen_count++] = csg_scene_children(s->scene, node)[k];
+    }
+}
+
 static bool find_normals(search *s)
 {
     const csgm_scene *scene = s->scene;
@@ -172,29 +191,33 @@ static bool find_normals(search *s)
     s->found_count = 0;
     if (!add_leaf_normals(s, &scene->nodes[s->root], &identity))
         return false;
-    s->to_own[s->root - s->first] = identity;
-    s->is_placed[s->root - s->first] = true;
-    for (size_t i = s->root + 1; i-- > s->first;) {
+    s->to_own[s->root] = identity;
+    s->is_placed[s->root] = true;
+    for (size_t at = 0; at < s->seen_count; at++) {
+        csg_node_id i = s->seen[at];
         const csg_node *node = &scene->nodes[i];
-        csg_affine inner = s->to_own[i - s->first];
-        bool is_placed = s->is_placed[i - s->first] && node->kind != CSG_NODE_WARP;
+        bool is_box = at > 0 && adds(node);
+        csg_affine inner = s->to_own[i];
+        bool is_placed = s->is_placed[i] && node->kind != CSG_NODE_WARP;
         if (node->kind == CSG_NODE_TRANSFORM)
             inner = csg_affine_multiply(scene->inverses[node->payload], inner);
-        for (uint32_t k = 0; k < node->child_count; k++) {
-            size_t child = csg_scene_children(scene, node)[k] - s->first;
+        for (uint32_t k = 0; k < node->child_count && !is_box; k++) {
+            csg_node_id child = csg_scene_children(scene, node)[k];
             s->to_own[child] = inner;
             s->is_placed[child] =
                 is_placed && !(node->kind == CSG_NODE_DIFFERENCE && k > 0); /* no face of it */
         }
-        if (node->child_count == 0 && is_placed && csg_node_is_primitive(node->kind) &&
-            !add_leaf_normals(s, node, &inner))
+        bool is_leaf = node->child_count == 0 && csg_node_is_primitive(node->kind);
+        if ((is_leaf || is_box) && is_placed && !add_leaf_normals(s, node, &inner))
             return false;
     }
     s->axes_count = s->found_count;
-    for (size_t i = s->first; i < s->root; i++)
-        if (scene->nodes[i].kind == CSG_NODE_SHAPE && s->is_placed[i - s->first] &&
-            !add_faces(s, &scene->nodes[i], &s->to_own[i - s->first]))
+    for (size_t at = 1; at < s->seen_count; at++) {
+        csg_node_id i = s->seen[at];
+        if (scene->nodes[i].kind == CSG_NODE_SHAPE && s->is_placed[i] &&
+            !add_faces(s, &scene->nodes[i], &s->to_own[i]))
             return false;
+    }
     sort_normals(s);
     return true;
 }
@@ -207,15 +230,14 @@ static double least_positive(double x, double otherwise)
     return x != 0 ? x : otherwise;
 }
 
-/* The axis of a leaf in the fillet's frame: the same for all leaves around it. False: it has none,
+/* The axis of a leaf in the union's frame: the same for all leaves around it. False: it has none,
  * or its frame makes it no circle. */
 static bool axis_of(const search *s, size_t i, csg_fillet_end *out, double *scale)
 {
     const csg_node *node = &s->scene->nodes[i];
     csg_affine place;
-    if (!s->is_placed[i - s->first] ||
-        (node->kind != CSG_NODE_FRUSTUM && node->kind != CSG_NODE_CIRCLE) ||
-        !csg_affine_invert(s->to_own[i - s->first], &place) || !csg_affine_is_similarity(&place))
+    if (!s->is_placed[i] || (node->kind != CSG_NODE_FRUSTUM && node->kind != CSG_NODE_CIRCLE) ||
+        !csg_affine_invert(s->to_own[i], &place) || !csg_affine_is_similarity(&place))
         return false;
     csg_vec3 n = csg_vec3_make(place.m[0][2], place.m[1][2], place.m[2][2]);
     csg_vec3 foot = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
@@ -245,7 +267,8 @@ static int compare_axes(const csg_fillet_end *a, const csg_fillet_end *b)
 static void find_axes(search *s)
 {
     s->axis_count = 0;
-    for (size_t i = s->first; i < s->root; i++) {
+    for (size_t n = 1; n < s->seen_count; n++) {
+        csg_node_id i = s->seen[n];
         csg_fillet_end made;
         double scale;
         size_t at = 0;
@@ -285,7 +308,7 @@ static void hand_down(search *s, size_t i)
 {
     const csgm_scene *scene = s->scene;
     const csg_node *node = &scene->nodes[i];
-    csg_vec3 n = s->normals[i - s->first];
+    csg_vec3 n = s->normals[i];
     if (node->kind == CSG_NODE_TRANSFORM)
         n = csg_affine_covector(&scene->transforms[node->payload], n);
     for (uint32_t k = 0; k < node->child_count; k++) {
@@ -294,7 +317,7 @@ static void hand_down(search *s, size_t i)
         if (csg_node_is_plate(node))
             inner = scene->nodes[child].flags & CSG_FLAG_FLAT ? csg_vec3_make(n.x, n.y, 0)
                                                               : csg_vec3_make(0, 0, n.z);
-        s->normals[child - s->first] = inner;
+        s->normals[child] = inner;
     }
 }
 
@@ -308,9 +331,9 @@ static double children_reach(const search *s, const csg_node *node)
 {
     const csg_node_id *children = csg_scene_children(s->scene, node);
     bool meets = node->kind == CSG_NODE_INTERSECTION;
-    double reach = s->reaches[children[0] - s->first];
+    double reach = s->reaches[children[0]];
     for (uint32_t k = 1; k < node->child_count && node->kind != CSG_NODE_DIFFERENCE; k++) {
-        double one = s->reaches[children[k] - s->first];
+        double one = s->reaches[children[k]];
         reach = csg_node_is_plate(node) ? reach + one : meets ? fmin(reach, one) : fmax(reach, one);
     }
     return reach;
@@ -335,12 +358,12 @@ static double shape_reach(const csg_shape *shape, csg_vec3 n)
     return isfinite(reach) ? reach : INFINITY;
 }
 
-/* Of what stands below the fillet: INFINITY where it is not known. */
+/* Of what stands below the union: INFINITY where it is not known. */
 static double node_reach(const search *s, size_t i)
 {
     const csgm_scene *scene = s->scene;
     const csg_node *node = &scene->nodes[i];
-    csg_vec3 n = s->normals[i - s->first];
+    csg_vec3 n = s->normals[i];
     if (csg_node_is_named_primitive(node->kind))
         return csg_primitive_of(node->kind)->support(csg_scene_parameters(scene, node), n);
     if (node->kind == CSG_NODE_SHAPE)
@@ -354,19 +377,20 @@ static double node_reach(const search *s, size_t i)
         return children_reach(s, node);
     if (!csg_node_is_operator(node->kind) || !is_within(node))
         return INFINITY;
-    bool adds = node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
-    return adds ? INFINITY : children_reach(s, node);
+    return adds(node) ? INFINITY : children_reach(s, node);
 }
 
 static void find_reaches(search *s, csg_vec3 n)
 {
-    s->normals[s->root - s->first] = n;
-    for (size_t i = s->root + 1; i-- > s->first;)
-        hand_down(s, i);
-    for (size_t i = s->first; i < s->root; i++) {
-        double box = box_reach(s->scene->bounds[i], s->normals[i - s->first]);
+    s->normals[s->root] = n;
+    for (size_t at = 0; at < s->seen_count; at++)
+        if (at == 0 || !adds(&s->scene->nodes[s->seen[at]]))
+            hand_down(s, s->seen[at]);
+    for (size_t at = s->seen_count; at-- > 1;) {
+        csg_node_id i = s->seen[at];
+        double box = box_reach(s->scene->bounds[i], s->normals[i]);
         double reach = node_reach(s, i);
-        s->reaches[i - s->first] = reach < box ? reach : box; /* a NaN is no bound */
+        s->reaches[i] = reach < box ? reach : box; /* a NaN is no bound */
     }
 }
 
@@ -380,8 +404,7 @@ static double corner_off(const search *s, size_t i, const csg_fillet_end *axis)
     csg_affine place;
     csg_vec3 away;
     double most = 0;
-    if (!s->is_placed[i - s->first] || !csg_box_is_finite(box) ||
-        !csg_affine_invert(s->to_own[i - s->first], &place))
+    if (!s->is_placed[i] || !csg_box_is_finite(box) || !csg_affine_invert(s->to_own[i], &place))
         return INFINITY;
     for (int k = 0; k < 8; k++) {
         csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
@@ -403,118 +426,150 @@ static double node_off(const search *s, size_t i, const csg_fillet_end *axis)
     if (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
         return children_reach(s, node);
     if (!csg_node_is_operator(node->kind) || !is_within(node) || csg_node_is_plate(node))
-        return csg_node_is_plate(node)
-                   ? fmin(s->reaches[csg_scene_children(s->scene, node)[0] - s->first],
-                          s->reaches[csg_scene_children(s->scene, node)[1] - s->first])
-                   : INFINITY;
-    bool adds = node->kind == CSG_NODE_UNION && !csg_blend_is_sharp(node->blend);
-    return adds ? INFINITY : children_reach(s, node);
+        return csg_node_is_plate(node) ? fmin(s->reaches[csg_scene_children(s->scene, node)[0]],
+                                              s->reaches[csg_scene_children(s->scene, node)[1]])
+                                       : INFINITY;
+    return adds(node) ? INFINITY : children_reach(s, node);
 }
 
 static void find_off(search *s, const csg_fillet_end *axis)
 {
-    for (size_t i = s->first; i < s->root; i++)
-        s->reaches[i - s->first] = fmin(corner_off(s, i, axis), node_off(s, i, axis));
+    for (size_t at = s->seen_count; at-- > 1;) {
+        csg_node_id i = s->seen[at];
+        s->reaches[i] = fmin(corner_off(s, i, axis), node_off(s, i, axis));
+    }
 }
 
 /* ---- all of them ------------------------------------------------------------------------------ */
 
-/* Nodes below stand right before it. */
-static csg_node_id first_below(const csgm_scene *scene, csg_node_id id)
+/* The ends of a union; *count: how many. */
+static bool find_ends(search *s, size_t *found)
 {
-    while (scene->nodes[id].child_count)
-        id = csg_scene_children(scene, &scene->nodes[id])[0];
-    return id;
-}
-
-/* The planes of a fillet, behind those found before. */
-static bool find_planes(search *s)
-{
-    csgm_scene *scene = s->scene;
-    const csg_node *node = &scene->nodes[s->root];
-    const csg_node_id *children = csg_scene_children(scene, node);
-    size_t nodes = s->root + 1 - s->first;
-    csg_arena_mark mark = csg_arena_get_mark(s->scratch);
-    s->to_own = csg_arena_calloc(s->scratch, nodes, sizeof *s->to_own);
-    s->is_placed = csg_arena_calloc(s->scratch, nodes, sizeof *s->is_placed);
-    s->normals = csg_arena_calloc(s->scratch, nodes, sizeof *s->normals);
-    s->reaches = csg_arena_calloc(s->scratch, nodes, sizeof *s->reaches);
-    if (!s->to_own || !s->is_placed || !s->normals || !s->reaches || !find_normals(s))
+    const csg_node *node = &s->scene->nodes[s->root];
+    const csg_node_id *children = csg_scene_children(s->scene, node);
+    see_all(s);
+    if (!find_normals(s))
         return false;
+    size_t nodes = s->seen_count;
     if (nodes * s->found_count > MOST_WORK)
         s->found_count = AXES;
     find_axes(s);
     if (nodes * s->axis_count > MOST_WORK)
         s->axis_count = 0;
-    size_t count = s->found_count + s->axis_count;
+    size_t count = *found = s->found_count + s->axis_count;
     void *made = s->made, *reached = s->reached;
-    if (!csg_memory_reserve(s->scratch->memory, &made, &s->made_capacity, s->made_count + count,
-                            sizeof *s->made))
+    if (!csg_memory_reserve(s->scratch->memory, &made, &s->made_capacity, count, sizeof *s->made))
         return false;
     s->made = made;
     if (!csg_memory_reserve(s->scratch->memory, &reached, &s->reached_capacity,
-                            s->reached_count + count * node->child_count, sizeof *s->reached))
+                            count * node->child_count, sizeof *s->reached))
         return false;
     s->reached = reached;
     for (size_t i = 0; i < count; i++) {
         bool is_round = i >= s->found_count;
         if (is_round) {
-            s->made[s->made_count + i] = s->axes[i - s->found_count];
+            s->made[i] = s->axes[i - s->found_count];
             find_off(s, &s->axes[i - s->found_count]);
         } else {
-            s->made[s->made_count + i] = (csg_fillet_end){.normal = s->found[i]};
+            s->made[i] = (csg_fillet_end){.normal = s->found[i]};
             find_reaches(s, s->found[i]);
         }
         for (uint32_t k = 0; k < node->child_count; k++)
-            s->reached[s->reached_count + k * count + i] = s->reaches[children[k] - s->first];
+            s->reached[k * count + i] = s->reaches[children[k]];
     }
-    double *v = scene->parameters + node->payload;
-    v[CSG_FILLET_FIRST_NORMAL] = (double)s->made_count;
-    v[CSG_FILLET_FIRST_REACH] = (double)s->reached_count;
-    v[CSG_FILLET_PLANES] = (double)count;
-    s->made_count += count;
-    s->reached_count += count * node->child_count;
-    csg_arena_release_to(s->scratch, mark);
     return true;
 }
 
-static bool has_planes(const csg_node *node)
+/* Nothing, where no union is wanted. */
+static bool make_room(search *s, bool (*is_wanted)(const csg_node *node))
 {
-    return node->kind == CSG_NODE_UNION && csg_blend_is_fillet(node->blend);
-}
-
-static bool keep(search *s)
-{
-    csgm_scene *scene = s->scene;
-    if (!s->made_count)
+    size_t nodes = s->scene->node_count, wanted = 0;
+    for (size_t i = 0; i < nodes; i++)
+        wanted += s->scene->nodes[i].kind == CSG_NODE_UNION && is_wanted(&s->scene->nodes[i]);
+    if (!wanted)
         return true;
-    scene->ends = csg_arena_calloc(&scene->arena, s->made_count, sizeof *s->made);
-    scene->reaches = csg_arena_calloc(&scene->arena, s->reached_count, sizeof *s->reached);
-    if (!scene->ends || !scene->reaches)
-        return false;
-    memcpy(scene->ends, s->made, s->made_count * sizeof *s->made);
-    memcpy(scene->reaches, s->reached, s->reached_count * sizeof *s->reached);
-    return true;
+    s->seen = csg_arena_calloc(s->scratch, nodes, sizeof *s->seen);
+    s->to_own = csg_arena_calloc(s->scratch, nodes, sizeof *s->to_own);
+    s->is_placed = csg_arena_calloc(s->scratch, nodes, sizeof *s->is_placed);
+    s->normals = csg_arena_calloc(s->scratch, nodes, sizeof *s->normals);
+    s->reaches = csg_arena_calloc(s->scratch, nodes, sizeof *s->reaches);
+    return s->seen && s->to_own && s->is_placed && s->normals && s->reaches;
 }
 
-csgm_status csg_fillet_planes_find(csgm_scene *scene)
+csgm_status csg_union_ends_find(const csgm_scene *scene, bool (*is_wanted)(const csg_node *node),
+                                csg_union_ends_take *take, void *user)
 {
     csg_arena scratch;
     csg_memory *memory = &scene->context->memory;
     csg_arena_init(&scratch, memory);
     search s = {.scene = scene, .scratch = &scratch};
-    bool done = true;
+    bool done = make_room(&s, is_wanted);
     for (size_t i = 0; done && i < scene->node_count; i++) {
-        if (!has_planes(&scene->nodes[i]))
+        if (scene->nodes[i].kind != CSG_NODE_UNION || !is_wanted(&scene->nodes[i]))
             continue;
+        size_t count = 0;
         s.root = (csg_node_id)i;
-        s.first = first_below(scene, s.root);
-        done = find_planes(&s);
+        done = find_ends(&s, &count) &&
+               take(user, s.root, &(csg_fillet_planes){s.made, s.reached, count, NULL});
     }
-    done = done && keep(&s);
     csg_memory_release(memory, s.found, s.found_capacity * sizeof *s.found);
     csg_memory_release(memory, s.made, s.made_capacity * sizeof *s.made);
     csg_memory_release(memory, s.reached, s.reached_capacity * sizeof *s.reached);
     csg_arena_reset(&scratch);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
+}
+
+/* ---- those of fillets -------------------------------------------------------------------------- */
+
+typedef struct kept {
+    csgm_scene *scene;
+    csg_fillet_end *ends;
+    double *reaches;
+    size_t count, capacity, reach_count, reach_capacity;
+} kept;
+
+/* Behind those found before. */
+static bool keep(void *user, csg_node_id id, const csg_fillet_planes *found)
+{
+    kept *k = user;
+    const csg_node *node = &k->scene->nodes[id];
+    csg_memory *memory = &k->scene->context->memory;
+    size_t reaches = found->count * node->child_count;
+    void *ends = k->ends, *reached = k->reaches;
+    if (!csg_memory_reserve(memory, &ends, &k->capacity, k->count + found->count, sizeof *k->ends))
+        return false;
+    k->ends = ends;
+    if (!csg_memory_reserve(memory, &reached, &k->reach_capacity, k->reach_count + reaches,
+                            sizeof *k->reaches))
+        return false;
+    k->reaches = reached;
+    if (found->count) {
+        memcpy(k->ends + k->count, found->ends, found->count * sizeof *k->ends);
+        memcpy(k->reaches + k->reach_count, found->reaches, reaches * sizeof *k->reaches);
+    }
+    double *v = k->scene->parameters + node->payload;
+    v[CSG_FILLET_FIRST_NORMAL] = (double)k->count;
+    v[CSG_FILLET_FIRST_REACH] = (double)k->reach_count;
+    v[CSG_FILLET_PLANES] = (double)found->count;
+    k->count += found->count;
+    k->reach_count += reaches;
+    return true;
+}
+
+csgm_status csg_fillet_planes_find(csgm_scene *scene)
+{
+    kept k = {.scene = scene};
+    csgm_status status = csg_union_ends_find(scene, csg_node_is_fillet, keep, &k);
+    if (status == CSGM_OK && k.count) {
+        scene->ends = csg_arena_calloc(&scene->arena, k.count, sizeof *k.ends);
+        scene->reaches = csg_arena_calloc(&scene->arena, k.reach_count, sizeof *k.reaches);
+        status = scene->ends && scene->reaches ? CSGM_OK : CSGM_ERR_MEMORY;
+    }
+    if (status == CSGM_OK && k.count) {
+        memcpy(scene->ends, k.ends, k.count * sizeof *k.ends);
+        memcpy(scene->reaches, k.reaches, k.reach_count * sizeof *k.reaches);
+    }
+    csg_memory_release(&scene->context->memory, k.ends, k.capacity * sizeof *k.ends);
+    csg_memory_release(&scene->context->memory, k.reaches, k.reach_capacity * sizeof *k.reaches);
+    return status;
 }

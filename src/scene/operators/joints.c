@@ -448,6 +448,11 @@ static void look_at_union(look *l, csg_joint_take *take, void *user)
         take(user, &joint);
 }
 
+static void take_idle(const csg_node *node, csg_joint_take *take, void *user)
+{
+    take(user, &(csg_joint){.kind = CSG_JOINT_MISSES, .node = node});
+}
+
 static void walk(look *l, csg_joint_take *take, void *user)
 {
     const csgm_scene *scene = l->scene;
@@ -461,6 +466,8 @@ static void walk(look *l, csg_joint_take *take, void *user)
             l->parents[children[k]] = (csg_node_id)i;
     }
     for (size_t i = 0; i < scene->node_count && l->work < MOST_WORK; i++) {
+        if (csg_node_is_idle(&scene->nodes[i]))
+            take_idle(&scene->nodes[i], take, user);
         if (!is_looked_at(&scene->nodes[i]))
             continue;
         l->first = l->firsts[i];
@@ -479,7 +486,8 @@ static bool has_blends(const csgm_scene *scene)
     for (size_t i = 0; i < scene->node_count; i++) {
         const csg_node *node = &scene->nodes[i];
         if (csg_node_is_operator(node->kind))
-            any = any || !csg_blend_is_sharp(csg_scene_blend(scene, node).kind);
+            any = any || !csg_blend_is_sharp(csg_scene_blend(scene, node).kind) ||
+                  csg_node_is_idle(node);
     }
     return any;
 }

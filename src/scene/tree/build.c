@@ -487,9 +487,12 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
     double *parameters = scene->parameters + scene->parameter_count;
     uint32_t own = csg_node_parameter_count(&scene->nodes[made]);
     parameters[CSG_OPERATOR_RULE] = blend.n;
-    bool all_soft = true;
-    for (size_t i = 0; i < count; i++)
-        all_soft &= (scene->nodes[children[i]].flags & CSG_FLAG_SOFT) != 0;
+    bool all_soft = true, some_soft = false;
+    for (size_t i = 0; i < count; i++) {
+        uint8_t flags = scene->nodes[children[i]].flags;
+        all_soft &= (flags & CSG_FLAG_SOFT) != 0;
+        some_soft |= (flags & (CSG_FLAG_SOFT | CSG_FLAG_PLATEAU)) != 0;
+    }
     if (csg_blend_is_fillet(blend.kind)) { /* planes are found when the scene is sealed */
         parameters[CSG_FILLET_FIRST_NORMAL] = parameters[CSG_FILLET_FIRST_REACH] = 0;
         parameters[CSG_FILLET_PLANES] = parameters[CSG_FILLET_APART] = 0;
@@ -499,6 +502,12 @@ csg_node_id csg_build_append_operator(csg_scene_builder *builder, csg_node_kind 
         parameters[CSG_OPERATOR_LAMBDA] = 0;
     }
     scene->parameter_count += own;
+    if (blend.is_number) {
+        builder->has_numbers = true;
+        scene->nodes[made].flags |=
+            CSG_FLAG_NUMBER |
+            (kind != CSG_NODE_INTERSECTION && !some_soft ? CSG_FLAG_UNGROUPED : 0);
+    }
     return made;
 }
 

@@ -19,6 +19,7 @@ typedef struct csg_scene_builder {
     size_t part_capacity, node_capacity, child_capacity, parameter_capacity, transform_capacity,
         look_capacity, formula_capacity, step_capacity, shape_capacity, warp_capacity,
         rule_capacity;
+    bool has_numbers;            /* some blend was a number (numbers.h) */
     struct csg_figures *figures; /* flat ones that were made before (figures.h); or NULL */
     csgm_status status;          /* first failure, sticky */
     char problem[160];           /* one sentence about it, "" for memory */

@@ -48,7 +48,7 @@ csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
     size_t oldest = scene->rule_count > SEARCHED ? scene->rule_count - SEARCHED : 0;
     for (size_t i = scene->rule_count; i-- > oldest;)
         if (scene->rules[i].range == rule.range && csg_rule_is_same(&scene->rules[i], &rule))
-            return (csg_blend){rule.kind, (double)i};
+            return (csg_blend){rule.kind, (double)i, false};
     void *rules = scene->rules;
     if (!csg_memory_reserve(&builder->context->memory, &rules, &builder->rule_capacity,
                             scene->rule_count + 1, sizeof *scene->rules)) {
@@ -57,7 +57,7 @@ csg_blend csg_build_rule(csg_scene_builder *builder, const csg_rule *given)
     }
     scene->rules = rules;
     scene->rules[scene->rule_count] = rule;
-    return (csg_blend){rule.kind, (double)scene->rule_count++};
+    return (csg_blend){rule.kind, (double)scene->rule_count++, false};
 }
 
 /* ---- the range of distances -------------------------------------------------------------------

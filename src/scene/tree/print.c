@@ -163,13 +163,15 @@ static void put_operator(const csg_printer *out, const csg_node *node)
                        fields ? csg_scene_parameters(out->scene, node)[CSG_OPERATOR_RANGE] : 0,
                        out->sink, out->user);
         separator = ", ";
-    } else if (csg_blend_is_round(blend.kind)) { /* round() itself is also a function of numbers */
+    } else if (csg_node_is_idle(node) ||
+               (csg_blend_is_round(blend.kind) && node->flags & CSG_FLAG_NUMBER)) {
         csg_put_argument(out, "", "blend", blend.n);
         separator = ", ";
     } else if (!rule && !csg_blend_is_sharp(blend.kind)) {
+        bool is_radius = csg_blend_is_fillet(blend.kind) || csg_blend_is_round(blend.kind);
         csg_put(out, "blend = ");
         csg_put(out, csg_blend_name(blend.kind));
-        csg_put_argument(out, "(", csg_blend_is_fillet(blend.kind) ? "r" : "n", blend.n);
+        csg_put_argument(out, "(", is_radius ? "r" : "n", blend.n);
         csg_put(out, ")");
         separator = ", ";
     }
@@ -285,6 +287,8 @@ static bool open_children(walk *w, csg_node_id id)
     const csgm_scene *scene = w->out.scene;
     const csg_node *node = &scene->nodes[id];
     void *open = w->open;
+    if (node->flags & CSG_FLAG_ENDED) /* the number of the union says so */
+        return open_children(w, csg_scene_children(scene, node)[0]);
     csg_put_indent(&w->out, w->open_count);
     if (!put_node(&w->out, node))
         return false;

@@ -557,6 +557,8 @@ static bool open_node(openscad_text *w, csg_node_id id, csg_box room, bool is_so
     const csgm_scene *scene = w->out.scene;
     const csg_node *node = &scene->nodes[id];
     void *open = w->open;
+    if (node->flags & CSG_FLAG_ENDED) /* without its blend the union ends there by itself */
+        return open_node(w, csg_scene_children(scene, node)[0], room, is_solid);
     csg_put_indent(&w->out, w->open_count);
     if (is_solid && node->flags & CSG_FLAG_FLAT) {
         put_shift(&w->out, 0, 0, csg_box_center(room).z);

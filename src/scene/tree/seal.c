@@ -9,6 +9,7 @@
 #include "scene/operators/fillet_planes.h"
 #include "scene/operators/rule.h"
 #include "scene/tree/build.h"
+#include "scene/tree/numbers.h"
 #include "scene/tree/softness.h"
 
 #include <string.h>
@@ -87,7 +88,8 @@ static bool push_node(walk *w, csg_node_id node, uint32_t parent)
 static bool is_flattened(const csgm_scene *scene, csg_node_id inner, csg_node_id outer)
 {
     const csg_node *a = &scene->nodes[inner], *b = &scene->nodes[outer];
-    return a->kind == b->kind && (a->kind == CSG_NODE_UNION || a->kind == CSG_NODE_INTERSECTION) &&
+    return !((a->flags | b->flags) & (CSG_FLAG_NUMBER | CSG_FLAG_ENDED)) && a->kind == b->kind &&
+           (a->kind == CSG_NODE_UNION || a->kind == CSG_NODE_INTERSECTION) &&
            csg_blend_is_sharp(a->blend) && csg_blend_is_sharp(b->blend);
 }
 
@@ -230,6 +232,14 @@ static void copy_nodes(csgm_scene *out, const csgm_scene *from, const walk *w)
     out->root = w->count - 1;
 }
 
+static const csg_node_id *find_origins(const walk *w, csg_arena *scratch)
+{
+    csg_node_id *origins = csg_arena_calloc(scratch, w->count, sizeof *origins);
+    for (uint32_t i = 0; i < w->count && origins; i++)
+        origins[i] = w->order[w->count - 1 - i].node;
+    return origins;
+}
+
 static bool copy_dependencies(csgm_scene *out, const char *const *names, size_t count)
 {
     out->dependencies = csg_arena_calloc(&out->arena, count, sizeof *out->dependencies);
@@ -310,8 +320,9 @@ static bool copy_rules(csgm_scene *out, const csgm_scene *from, csg_arena *scrat
     return out->rules;
 }
 
+/* origins: NULL, or where an array of the scratch goes: the builder's node of each sealed one. */
 static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
-                        csgm_scene *out)
+                        const csg_node_id **origins, csgm_scene *out)
 {
     walk w;
     csgm_status status = walk_begin(&w, scratch, builder->scene, root);
@@ -324,14 +335,17 @@ static csgm_status seal(csg_scene_builder *builder, csg_node_id root, csg_arena 
         return CSGM_ERR_MEMORY;
     }
     copy_nodes(out, builder->scene, &w);
+    if (origins && !(*origins = find_origins(&w, scratch)))
+        return CSGM_ERR_MEMORY;
     bool done = copy_part_names(out, builder->scene) && copy_rules(out, builder->scene, scratch);
     if (done && (out->rule_count || has_soft_nodes(out)))
         done = csg_softness_settle(out, scratch);
     return done ? CSGM_OK : CSGM_ERR_MEMORY;
 }
 
-/* A sealed copy of what stands below root, without bounds. */
-static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_scene **out)
+/* A sealed copy of what stands below root, without bounds; origins as for seal. */
+static csgm_status copy_sealed(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
+                               const csg_node_id **origins, csgm_scene **out)
 {
     csg_memory *memory = &builder->context->memory;
     csgm_scene *scene = csg_memory_alloc(memory, sizeof *scene);
@@ -339,14 +353,52 @@ static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_
         return CSGM_ERR_MEMORY;
     *scene = (csgm_scene){.context = builder->context};
     csg_arena_init(&scene->arena, memory);
-    csg_arena scratch;
-    csg_arena_init(&scratch, memory);
-    csgm_status status = seal(builder, root, &scratch, scene);
-    csg_arena_reset(&scratch);
+    csgm_status status = seal(builder, root, scratch, origins, scene);
     if (status == CSGM_OK)
         *out = scene;
     else
         csg_scene_destroy(scene);
+    return status;
+}
+
+/* What numbers mean as blends is put into the builder's tree by what sealed copies of it tell. */
+static csgm_status settle_numbers(csg_scene_builder *builder, csg_node_id root, csg_arena *scratch,
+                                  csg_numbers_before *before)
+{
+    csgm_status status = CSGM_OK;
+    for (int step = 0; step < 2 && status == CSGM_OK; step++) {
+        csgm_scene *scene;
+        const csg_node_id *origins;
+        status = copy_sealed(builder, root, scratch, &origins, &scene);
+        if (status != CSGM_OK)
+            return status;
+        if (step == 0 && !csg_numbers_are_pending(scene)) {
+            csg_scene_destroy(scene);
+            return CSGM_OK;
+        }
+        status = csg_bounds_fill(scene);
+        if (status == CSGM_OK && step == 0)
+            status = csg_numbers_remember(builder, scene, origins, scratch, before);
+        if (status == CSGM_OK)
+            status = (step == 0 ? csg_numbers_group : csg_numbers_end)(builder, scene, origins);
+        csg_scene_destroy(scene);
+    }
+    return status;
+}
+
+static csgm_status seal_copy(csg_scene_builder *builder, csg_node_id root, csgm_scene **out)
+{
+    csg_arena scratch;
+    csg_arena_init(&scratch, &builder->context->memory);
+    csgm_status status = CSGM_OK;
+    csg_numbers_before before = {.node_count = 0};
+    if (builder->has_numbers)
+        status = settle_numbers(builder, root, &scratch, &before);
+    if (status == CSGM_OK)
+        status = copy_sealed(builder, root, &scratch, NULL, out);
+    if (before.node_count)
+        csg_numbers_undo(builder, &before);
+    csg_arena_reset(&scratch);
     return status;
 }
 
