@@ -10,6 +10,7 @@
 #include "field/taylor/tape_taylor.h"
 #include "measure/enclosure.h"
 #include "measure/graph.h"
+#include "measure/graph_field.h"
 #include "measure/graph_support.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
@@ -130,7 +131,7 @@ static void try_pieces(const mesh_case *m, csg_random *random, const double c[3]
                        tally *seen)
 {
     csg_taylor_pieces f;
-    if (!csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), &f) || f.count < 2)
+    if (!csg_graph_field_pieces(&m->field->tape, c, half, &f) || f.count < 2)
         return;
     csg_vec3 center = csg_vec3_add(m->field->center, csg_vec3_make(c[0], c[1], c[2]));
     for (int i = 0; i < POINTS; i++) {
@@ -159,7 +160,7 @@ static void try_pieces(const mesh_case *m, csg_random *random, const double c[3]
 static bool find_of_scene(const void *user, const double c[3], double half, csg_taylor_pieces *out)
 {
     const mesh_case *m = user;
-    return csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), out);
+    return csg_graph_field_pieces(&m->field->tape, c, half, out);
 }
 
 /* Of several pieces, by parts. */
