@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/geometry.h"
 #include "field/taylor/taylor_walk.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/fillet.h"
@@ -292,9 +293,40 @@ static bool combine_signs(csg_taylor_walk *w, const csg_tape_node *node)
     return true;
 }
 
+/* Where sums of squares are closer to their polynomials. G is off by the fourth power of how far
+ * gradients are apart, over w^3, and they by the square of what operands bend, over w, so that it
+ * is they at edges and G where one surface goes on from another. Along the normal they bend, as G
+ * does not: in a ball that is not small beside w they are no graph. */
+static bool prefers_squares(const csg_taylor_walk *w, const csg_tape_node *node)
+{
+    static const double SMALL = 0.2;
+    const csg_taylor_operand *of = &w->stack[w->top - node->arity];
+    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, apart = 0, bent = 0;
+    uint32_t may[CSG_TAYLOR_NODES], count = 0;
+    if (!(w->radius < SMALL * width))
+        return false;
+    for (uint32_t i = 0; i < node->arity; i++)
+        if (turn * of[i].f.value + width + csg_taylor_reach(&of[i].f, w->radius) > 0)
+            may[count++] = i;
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_taylor *a = &of[may[i]].f;
+        double square = 0;
+        for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+            square += (n < 3 ? 1 : 2) * a->bend[n] * a->bend[n];
+        bent = fmax(bent, square);
+        for (uint32_t k = 0; k < i; k++) {
+            const double *b = of[may[k]].f.slope;
+            const double d[3] = {a->slope[0] - b[0], a->slope[1] - b[1], a->slope[2] - b[2]};
+            apart = fmax(apart, csg_dot3(d, d));
+        }
+    }
+    return sqrt(bent) * width < apart || count < 2;
+}
+
 bool csg_taylor_walk_round(csg_taylor_walk *w, const csg_tape_node *node)
 {
-    bool signs = w->signs[node - w->tape->nodes];
+    bool signs = w->signs[node - w->tape->nodes] && prefers_squares(w, node);
     if (!are_known(&w->stack[w->top - node->arity], node->arity) ||
         !(signs ? combine_signs(w, node) : combine_round(w, node)))
         return false;

@@ -57,17 +57,15 @@ bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int c
 static bool take_square(const csg_smooth_leaf *l, double t, const csg_smooth *const *u, int count,
                         csg_smooth *out)
 {
-    static const double FAR = 3; /* beyond, it is too steep to be of use */
+    static const double SHARE = 0.2; /* of t: in a larger ball gradients turn too far for a graph */
     csg_taylor sum = csg_taylor_constant(-t * t);
-    if (!(t > 0))
+    if (!(l->reach < SHARE * t))
         return false;
     for (int i = 0; i < count; i++) {
         csg_taylor square = csg_taylor_square(&u[i]->f, l->radius);
         sum = csg_taylor_sum(&sum, 1, &square);
     }
     double most = csg_taylor_most(&sum, l->radius) + t * t;
-    if (!(most < FAR * FAR * t * t))
-        return false;
     l->choice->stretch = fmax(0.5 + 0.5 * sqrt(most) / t, 1) * (1 + 1e-12);
     out->f = csg_taylor_raised(csg_taylor_scaled(&sum, -0.5 / t), l->choice->level);
     return true;
