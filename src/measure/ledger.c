@@ -12,6 +12,32 @@ void csg_ledger_release(csg_ledger *r, csg_memory *memory, size_t account_bytes)
     *r = (csg_ledger){.is_lost = true};
 }
 
+csg_ledger csg_ledger_copy(const csg_ledger *from, csg_memory *memory, size_t account_bytes)
+{
+    enum { FEW = 16 };
+    csg_ledger to = {.is_lost = true};
+    if (from->is_lost || from->leaves < FEW ||
+        !csg_memory_reserve(memory, (void **)&to.opens, &to.room, from->count, sizeof *to.opens))
+        return to;
+    if (!csg_memory_reserve(memory, (void **)&to.accounts, &to.leaf_room, from->leaves,
+                            account_bytes)) {
+        csg_ledger_release(&to, memory, account_bytes);
+        return to;
+    }
+    memcpy(to.opens, from->opens, from->count * sizeof *to.opens);
+    memcpy(to.accounts, from->accounts, from->leaves * account_bytes);
+    to.count = from->count;
+    to.leaves = from->leaves;
+    to.is_lost = false;
+    return to;
+}
+
+void csg_ledger_begin(csg_ledger *r)
+{
+    r->count = r->leaves = 0;
+    r->is_lost = false;
+}
+
 size_t csg_ledger_bytes(const csg_ledger *r, size_t account_bytes)
 {
     return r->room * sizeof *r->opens + r->leaf_room * account_bytes;

@@ -14,9 +14,13 @@ typedef struct csg_ledger {
     bool is_lost; /* there was no memory for it: nothing is known */
 } csg_ledger;
 
+/* In no more memory than it needs; of few cubes, which are soon looked at again, none is kept. */
+csg_ledger csg_ledger_copy(const csg_ledger *from, csg_memory *memory, size_t account_bytes);
 void csg_ledger_release(csg_ledger *r, csg_memory *memory, size_t account_bytes);
 size_t csg_ledger_bytes(const csg_ledger *r, size_t account_bytes);
 
+/* Empty, in the memory that it has. */
+void csg_ledger_begin(csg_ledger *r);
 void csg_ledger_add_divided(csg_ledger *r, csg_memory *memory);
 void csg_ledger_add_leaf(csg_ledger *r, csg_memory *memory, double open, const void *account,
                          size_t account_bytes);

@@ -30,7 +30,7 @@ typedef struct rounds {
     csg_measure_walk *walk;
     tally *tallies; /* one a cube of the frontier, as the accounts */
     char *accounts;
-    csg_ledger *ledgers; /* one a cube of the frontier */
+    csg_ledger *ledgers; /* one a cube of the frontier, then one a worker, for what it walks */
     uint32_t *order;     /* of the frontier's cubes, octant by octant, level by level */
     double share;
     uint64_t most_of_one;
@@ -133,10 +133,11 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
     tally *kept = &r->tallies[index], now = {.worst = 0};
     if (kept->worst <= r->share || kept->is_full)
         return true;
-    csg_ledger next = {.count = 0}, *ledger = &r->ledgers[index];
-    stroll s = {.r = r, .worker = worker, .t = &now, .ledger = &next};
+    csg_ledger *ledger = &r->ledgers[index], *next = &r->ledgers[r->walk->count + worker_index];
+    stroll s = {.r = r, .worker = worker, .t = &now, .ledger = next};
     csg_ledger_reader known = {.of = ledger->is_lost ? NULL : ledger};
     csg_arena_mark mark = csg_arena_get_mark(&worker->arena);
+    csg_ledger_begin(next);
     void *account = csg_arena_alloc(&worker->arena, r->job->account_bytes);
     bool done = account && !csg_mesh_should_stop(r->walk->watch) &&
                 visit(&s, &r->walk->cubes[index], &known, account);
@@ -147,9 +148,7 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
         *kept = now;
         memcpy(account_of(r, r->accounts, index), account, r->job->account_bytes);
         csg_ledger_release(ledger, memory, r->job->account_bytes);
-        *ledger = next;
-    } else {
-        csg_ledger_release(&next, memory, r->job->account_bytes);
+        *ledger = csg_ledger_copy(next, memory, r->job->account_bytes);
     }
     csg_arena_release_to(&worker->arena, mark);
     return done;
@@ -178,11 +177,12 @@ static void report(void *user, size_t done, size_t count)
 static void begin_tallies(rounds *r)
 {
     const csg_rounds_job *job = r->job;
+    for (size_t i = 0; i < r->walk->count + r->walk->worker_count; i++)
+        r->ledgers[i] = (csg_ledger){.is_lost = true};
     for (size_t i = 0; i < r->walk->count; i++) {
         const csg_measure_cube *q = &r->walk->cubes[i];
         bool is_surface = q->state == CSG_CELL_SURFACE;
         r->tallies[i] = (tally){.worst = is_surface ? INFINITY : 0};
-        r->ledgers[i] = (csg_ledger){.is_lost = true};
         (is_surface ? job->leave_open : job->settle_plain)(job->user, q,
                                                            account_of(r, r->accounts, i));
     }
@@ -338,7 +338,8 @@ csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job
     size_t count = walk->count + 1, bytes = count * sizeof(tally),
            account_bytes = count * job->account_bytes,
            order_bytes = LEVELS * count * sizeof(uint32_t),
-           ledger_bytes = count * sizeof(csg_ledger);
+           ledger_count = walk->count + walk->worker_count,
+           ledger_bytes = ledger_count * sizeof(csg_ledger);
     rounds r = {.job = job, .walk = walk, .share = job->share};
     csgm_status status;
     r.tallies = csg_memory_alloc(memory, bytes);
@@ -348,7 +349,7 @@ csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job
     if (r.tallies && r.accounts && r.order && r.ledgers) {
         begin_tallies(&r);
         status = go_on(&r, most_cubes);
-        for (size_t i = 0; i < walk->count; i++)
+        for (size_t i = 0; i < ledger_count; i++)
             csg_ledger_release(&r.ledgers[i], memory, job->account_bytes);
     } else {
         status = csg_context_no_memory(walk->context);
