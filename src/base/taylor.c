@@ -61,20 +61,37 @@ csg_taylor csg_taylor_scaled(const csg_taylor *a, double factor)
     return out;
 }
 
+/* The second derivatives' change: the third ones along x. */
+static void turn_along(const double t[CSG_TAYLOR_THIRD], const double x[3],
+                       double turned[CSG_TAYLOR_SECOND])
+{
+    turned[XX] = t[XXX] * x[0] + t[XXY] * x[1] + t[XXZ] * x[2];
+    turned[YY] = t[XYY] * x[0] + t[YYY] * x[1] + t[YYZ] * x[2];
+    turned[ZZ] = t[XZZ] * x[0] + t[YZZ] * x[1] + t[ZZZ] * x[2];
+    turned[XY] = t[XXY] * x[0] + t[XYY] * x[1] + t[XYZ] * x[2];
+    turned[XZ] = t[XXZ] * x[0] + t[XYZ] * x[1] + t[XZZ] * x[2];
+    turned[YZ] = t[XYZ] * x[0] + t[YYZ] * x[1] + t[YZZ] * x[2];
+}
+
+static void multiply(const double b[CSG_TAYLOR_SECOND], const double x[3], double out[3])
+{
+    out[0] = b[XX] * x[0] + b[XY] * x[1] + b[XZ] * x[2];
+    out[1] = b[XY] * x[0] + b[YY] * x[1] + b[YZ] * x[2];
+    out[2] = b[XZ] * x[0] + b[YZ] * x[1] + b[ZZ] * x[2];
+}
+
 csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3])
 {
     csg_taylor out = *a;
+    double turned[CSG_TAYLOR_SECOND], first[3], second[3];
+    turn_along(a->third, x, turned);
+    multiply(a->bend, x, first);
+    multiply(turned, x, second);
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+        out.bend[n] += turned[n];
     for (int i = 0; i < 3; i++) {
-        double rest = 0;
-        for (int j = 0; j < 3; j++) {
-            double bend = a->bend[csg_taylor_second[i][j]], turned = 0;
-            for (int k = 0; k < 3; k++)
-                turned += a->third[csg_taylor_third[i][j][k]] * x[k];
-            out.bend[csg_taylor_second[i][j]] = bend + turned;
-            out.slope[i] += (bend + 0.5 * turned) * x[j];
-            rest += (0.5 * bend + turned / 6) * x[j];
-        }
-        out.value += (a->slope[i] + rest) * x[i];
+        out.slope[i] += first[i] + 0.5 * second[i];
+        out.value += (a->slope[i] + 0.5 * first[i] + second[i] / 6) * x[i];
     }
     return out;
 }
@@ -109,15 +126,18 @@ double csg_taylor_reach(const csg_taylor *a, double r)
 /* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
 double csg_taylor_bends(const csg_taylor *a, const double half[3])
 {
-    double reach = 0;
+    double b[CSG_TAYLOR_SECOND], t[CSG_TAYLOR_THIRD], along[CSG_TAYLOR_SECOND], first[3], second[3],
+        reach = 0;
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+        b[n] = fabs(a->bend[n]);
+    for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
+        t[n] = fabs(a->third[n]);
+    turn_along(t, half, along);
+    multiply(b, half, first);
+    multiply(along, half, second);
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            reach += 0.5 * fabs(a->bend[csg_taylor_second[i][j]]) * half[i] * half[j];
-            for (int k = 0; k < 3; k++)
-                reach +=
-                    fabs(a->third[csg_taylor_third[i][j][k]]) / 6 * half[i] * half[j] * half[k];
-        }
-    return reach;
+        reach += (0.5 * first[i] + second[i] / 6) * half[i];
+    return reach * (1 + 1e-12);
 }
 
 double csg_taylor_stray(const csg_taylor *a, double r)

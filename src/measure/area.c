@@ -19,10 +19,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/taylor/tape_taylor.h"
 #include "measure/graph.h"
+#include "measure/graph_field.h"
 #include "measure/rounds.h"
 #include "measure/section.h"
+
+/* Of what a cube may leave open: a face of it that is known so closely is known. */
+static const double FACE_CLOSE = 0.03;
 
 enum {
     FACES = 6,
@@ -214,10 +217,15 @@ static void find_faces(double half, const csg_halves *halves, const csg_taylor_p
     double whole = face_of(half), area, error;
     for (int i = 0; i < FACES; i++) {
         int axis = i / 2, side = i & 1 ? 1 : -1;
+        csg_section *face = &a->faces[i];
+        *face = (csg_section){0, whole};
         if (f && csg_graph_face(f, half, axis, side, enough, &area, &error))
-            a->faces[i] = (csg_section){fmax(area - error, 0), fmin(area + error, whole)};
-        else
-            a->faces[i] = csg_section_of_face(halves, half, axis, side);
+            *face = (csg_section){fmax(area - error, 0), fmin(area + error, whole)};
+        if (face->most - face->least <= FACE_CLOSE * enough && f)
+            continue;
+        csg_section planes = csg_section_of_face(halves, half, axis, side);
+        face->least = fmax(face->least, planes.least);
+        face->most = fmin(face->most, planes.most);
     }
 }
 
@@ -325,7 +333,7 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     csg_taylor_pieces f; /* not filled: they are large */
     double turn = 1;
     account *a = out;
-    bool has_pieces = csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f);
+    bool has_pieces = csg_graph_field_pieces(&q->tape, q->c, q->half, &f);
     bool is_smooth = has_pieces && enclose_smooth(q, &f, &halves);
     if (is_smooth)
         csg_measure_take_state(q, &halves);

@@ -182,6 +182,9 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_
     return isfinite(out->integrals[CSG_INTEGRAL_ONE] + out->error + out->second);
 }
 
+/* ---- its faces ---------------------------------------------------------------------------------
+ */
+
 /* The model on the face, as one that does not depend on the axis. */
 static csg_taylor on_face(const csg_taylor *f, double at, int axis)
 {
@@ -197,25 +200,34 @@ static csg_taylor on_face(const csg_taylor *f, double at, int axis)
     return out;
 }
 
-/* A csg_graph_part of the cube's face over each piece of the face's own side, divided by how wide
- * it is along the axis: it is the same everywhere along that, and farthest from the centre at the
- * face. */
-bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
-                    double *area, double *error)
+enum { FACE_QUARTERED = 3 /* times, at most */ };
+
+/* Of a face: what is in the solid, and how far it may be from that. */
+typedef struct part {
+    double area, error;
+} part;
+
+/* The model around a point in the cube of that half. */
+static csg_taylor moved(const csg_taylor *f, const double to[3], double half)
 {
-    csg_taylor_pieces faces; /* not filled: they are large */
+    csg_taylor out = csg_taylor_moved(f, to);
+    double most = 3 * half * half;
+    out.error += out.quartic * most * most;
+    out.turned += out.thrice * most * sqrt(most);
+    out.quartic = out.thrice = 0;
+    return out;
+}
+
+/* A csg_graph_part of the square over each piece of its own side, divided by how wide it is along
+ * the axis: it is the same everywhere along that, and farthest from the centre at the face. False:
+ * the surface may not be a graph there. */
+static bool add_square(const csg_taylor_pieces *faces, double half, int axis, double enough,
+                       part *sum)
+{
     solid s = {.with_moments = false};
-    csg_graph_field g;
-    double piece = half / CSG_GRAPH_SIDE, whole = 4 * half * half;
-    faces.count = f->count;
-    for (int i = 0; i < f->count; i++) {
-        const csg_taylor_piece *of = &f->of[i];
-        faces.of[i].f = on_face(&of->f, side * half, axis);
-        faces.of[i].condition_count = of->condition_count;
-        for (int n = 0; n < of->condition_count; n++)
-            faces.of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
-    }
-    if (!csg_graph_field_begin(&g, &faces, half) || g.bases[0].axes[2] == axis)
+    csg_graph_field g; /* not filled: it is large */
+    double piece = half / CSG_GRAPH_SIDE;
+    if (!csg_graph_field_begin(&g, faces, half) || g.bases[0].axes[2] == axis)
         return false;
     int along = g.bases[0].axes[0] == axis ? 0 : 1;
     for (int i = 0; i < CSG_GRAPH_SIDE; i++) {
@@ -225,7 +237,81 @@ bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side,
         if (!add_columns(&g, &q, CSG_GRAPH_LEAST * 2 * piece * enough, &s))
             return false;
     }
-    *area = s.integrals[CSG_INTEGRAL_ONE] / (2 * piece);
-    *error = fmin((s.error + s.open) / (2 * piece) * (1 + 1e-9), whole);
+    sum->area += s.integrals[CSG_INTEGRAL_ONE] / (2 * piece);
+    sum->error += fmin((s.error + s.open) / (2 * piece) * (1 + 1e-9), 4 * half * half);
+    return true;
+}
+
+/* All of it is inside, or outside, by all pieces. */
+static csg_graph_columns state_of_square(const csg_taylor_pieces *faces, double half)
+{
+    csg_graph_columns state = csg_graph_field_state(&faces->of[0].f, half);
+    for (int i = 1; i < faces->count && state != CSG_COLUMNS_CROSSED; i++)
+        if (csg_graph_field_state(&faces->of[i].f, half) != state)
+            state = CSG_COLUMNS_CROSSED;
+    return state;
+}
+
+/* One of four parts of the square. whole: half of the cube in which the models hold. */
+static void find_quarter(const csg_taylor_pieces *faces, double half, double whole, int axis,
+                         int which, csg_taylor_pieces *out)
+{
+    double to[3] = {0};
+    to[(axis + 1) % 3] = which & 1 ? half / 2 : -half / 2;
+    to[(axis + 2) % 3] = which & 2 ? half / 2 : -half / 2;
+    out->count = faces->count;
+    for (int i = 0; i < faces->count; i++) {
+        const csg_taylor_piece *of = &faces->of[i];
+        out->of[i].f = moved(&of->f, to, whole);
+        out->of[i].condition_count = of->condition_count;
+        for (int n = 0; n < of->condition_count; n++)
+            out->of[i].conditions[n] = moved(&of->conditions[n], to, whole);
+    }
+}
+
+/* Where the surface is nearly parallel to the face, its section bends so much that it is a graph
+ * over parts of the face only: those over which it is none are divided. */
+static void add_part(const csg_taylor_pieces *faces, double half, double whole, int axis,
+                     double enough, int more, part *sum)
+{
+    double area = 4 * half * half;
+    csg_graph_columns state = state_of_square(faces, half);
+    if (state != CSG_COLUMNS_CROSSED) {
+        sum->area += state == CSG_COLUMNS_FULL ? area : 0;
+        return;
+    }
+    if (add_square(faces, half, axis, enough, sum))
+        return;
+    if (!more || area <= CSG_GRAPH_LEAST * enough) {
+        sum->area += area / 2;
+        sum->error += area / 2;
+        return;
+    }
+    for (int i = 0; i < 4; i++) {
+        csg_taylor_pieces quarter; /* not filled: they are large */
+        find_quarter(faces, half, whole, axis, i, &quarter);
+        if (csg_graph_field_keep(&quarter, half / 2))
+            add_part(&quarter, half / 2, whole, axis, enough / 4, more - 1, sum);
+    }
+}
+
+bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
+                    double *area, double *error)
+{
+    csg_taylor_pieces faces; /* not filled: they are large */
+    part sum = {0, 0};
+    faces.count = f->count;
+    for (int i = 0; i < f->count; i++) {
+        const csg_taylor_piece *of = &f->of[i];
+        faces.of[i].f = on_face(&of->f, side * half, axis);
+        faces.of[i].condition_count = of->condition_count;
+        for (int n = 0; n < of->condition_count; n++)
+            faces.of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
+    }
+    if (!csg_graph_field_keep(&faces, half))
+        return false;
+    add_part(&faces, half, half, axis, enough, FACE_QUARTERED, &sum);
+    *area = sum.area;
+    *error = fmin(sum.error, 4 * half * half);
     return isfinite(*area + *error);
 }

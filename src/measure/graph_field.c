@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "measure/enclosure.h"
+
 enum {
     HALVED_MOST = 6,
     LOOKS_MOST = 32 /* at parts of a first patch */
@@ -316,8 +318,7 @@ bool csg_graph_field_visit(const csg_graph_field *g, const csg_graph_patch *firs
 /* ---- the axes ----------------------------------------------------------------------------------
  */
 
-/* Whether all of the cube is inside of the piece, or outside. */
-static csg_graph_columns state_of(const csg_taylor *f, double half)
+csg_graph_columns csg_graph_field_state(const csg_taylor *f, double half)
 {
     const double box[3] = {half, half, half};
     double most = 3 * half * half,
@@ -329,12 +330,51 @@ static csg_graph_columns state_of(const csg_taylor *f, double half)
                                : CSG_COLUMNS_CROSSED;
 }
 
+/* False: the piece is the field nowhere in the cube. */
+static bool keep_conditions(csg_taylor_piece *piece, double half)
+{
+    int kept = 0;
+    for (int n = 0; n < piece->condition_count; n++) {
+        csg_graph_columns state = csg_graph_field_state(&piece->conditions[n], half);
+        if (state == CSG_COLUMNS_EMPTY)
+            return false;
+        if (state == CSG_COLUMNS_FULL)
+            continue;
+        if (kept < n)
+            piece->conditions[kept] = piece->conditions[n];
+        kept++;
+    }
+    piece->condition_count = kept;
+    return true;
+}
+
+bool csg_graph_field_keep(csg_taylor_pieces *f, double half)
+{
+    int kept = 0;
+    for (int i = 0; i < f->count; i++) {
+        if (!keep_conditions(&f->of[i], half))
+            continue;
+        if (kept < i)
+            f->of[kept] = f->of[i];
+        kept++;
+    }
+    f->count = kept;
+    return kept > 0;
+}
+
+bool csg_graph_field_pieces(const csg_tape *tape, const double c[3], double half,
+                            csg_taylor_pieces *out)
+{
+    return csg_tape_taylor_pieces(tape, c, csg_enclosure_radius(half), out) &&
+           csg_graph_field_keep(out, half);
+}
+
 bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half)
 {
     double slope[3] = {0};
     g->count = f->count;
     for (int i = 0; i < f->count; i++) {
-        g->of[i] = f->count > 1 ? state_of(&f->of[i].f, half) : CSG_COLUMNS_CROSSED;
+        g->of[i] = f->count > 1 ? csg_graph_field_state(&f->of[i].f, half) : CSG_COLUMNS_CROSSED;
         for (int k = 0; k < 3 && g->of[i] == CSG_COLUMNS_CROSSED; k++)
             slope[k] += f->of[i].f.slope[k];
     }

@@ -17,6 +17,17 @@ typedef struct csg_graph_field {
     int count;
 } csg_graph_field;
 
+/* A tape's field in the ball around the cube (csg_tape_taylor_pieces), without the pieces that it
+ * is nowhere in the cube, and the conditions that hold all over it. */
+bool csg_graph_field_pieces(const csg_tape *tape, const double c[3], double half,
+                            csg_taylor_pieces *out);
+
+/* The same of pieces that are valid in the cube already. False: none is left. */
+bool csg_graph_field_keep(csg_taylor_pieces *f, double half);
+
+/* Whether all of the cube is in the piece's solid, or outside of it, if that is told. */
+csg_graph_columns csg_graph_field_state(const csg_taylor *f, double half);
+
 /* For pieces that are valid in the ball around the cube and stay where they are. False: the surface
  * may not be a graph. */
 bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half);

@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/taylor/tape_taylor.h"
 #include "measure/carve.h"
 #include "measure/graph.h"
+#include "measure/graph_field.h"
 #include "measure/rounds.h"
 
 /* Of a cube. */
@@ -109,7 +109,7 @@ static double settle_smooth(const csg_measure_cube *q, double enough, sum *s)
 {
     csg_taylor_pieces f; /* not filled: they are large */
     csg_graph graph;
-    if (!csg_tape_taylor_pieces(&q->tape, q->c, csg_enclosure_radius(q->half), &f) ||
+    if (!csg_graph_field_pieces(&q->tape, q->c, q->half, &f) ||
         !csg_graph_find(&f, q->half, enough, &graph))
         return INFINITY;
     if (!graph.is_close) {

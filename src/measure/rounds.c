@@ -8,17 +8,21 @@
 
 #include "base/elementary.h"
 #include "base/pool.h"
+#include "measure/ledger.h"
 
 enum {
-    ASK_EVERY = 256, /* cubes, whether to stop */
-    LEVELS = 8       /* from the root to the frontier, and one */
+    ASK_EVERY = 256,    /* cubes, whether to stop */
+    LEVELS = 8,         /* from the root to the frontier, and one */
+    LEDGERS_MOST = 128, /* MB of ledgers between two rounds */
+    LEDGERS_SHARE = 8   /* and what part of all memory, where that has a limit */
 };
 
 /* Of one cube of the frontier. */
 typedef struct tally {
-    double worst;           /* the most that one cube leaves open */
-    uint64_t cubes, looked; /* in the latest round; in all */
-    bool is_full;           /* it had its share of cubes: it stays as it is */
+    double worst;            /* the most that one cube leaves open */
+    uint64_t cubes;          /* in it */
+    uint64_t latest, looked; /* at how many of them the latest round has looked; all rounds */
+    bool is_full;            /* it had its share of cubes: it stays as it is */
 } tally;
 
 typedef struct rounds {
@@ -26,7 +30,8 @@ typedef struct rounds {
     csg_measure_walk *walk;
     tally *tallies; /* one a cube of the frontier, as the accounts */
     char *accounts;
-    uint32_t *order; /* of the frontier's cubes, octant by octant, level by level */
+    csg_ledger *ledgers; /* one a cube of the frontier, then one a worker, for what it walks */
+    uint32_t *order;     /* of the frontier's cubes, octant by octant, level by level */
     double share;
     uint64_t most_of_one;
     atomic_bool out_of_memory;
@@ -37,39 +42,86 @@ static char *account_of(const rounds *r, char *accounts, size_t i)
     return accounts + i * r->job->account_bytes;
 }
 
-/* False: out of memory, or it is time to stop. */
-static bool visit(rounds *r, csg_measure_worker *worker, tally *t, const csg_measure_cube *parent,
-                  void *out)
+/* A walk of one cube of the frontier. */
+typedef struct stroll {
+    rounds *r;
+    csg_measure_worker *worker;
+    tally *t;
+    csg_ledger *ledger; /* of this round */
+} stroll;
+
+/* What a cube comes to that the round before has left as it is. True: it is enough. */
+static bool take_known(stroll *s, const csg_measure_cube *q, double open, const void *known,
+                       void *account)
 {
+    const rounds *r = s->r;
+    if (open > r->share && !s->t->is_full && q->level < CSG_MEASURE_DEEPEST)
+        return false;
+    s->t->worst = fmax(s->t->worst, open);
+    memcpy(account, known, r->job->account_bytes);
+    csg_ledger_add_leaf(s->ledger, &r->walk->context->memory, open, known, r->job->account_bytes);
+    return true;
+}
+
+/* What it comes to. True: it is enough. */
+static bool settle(stroll *s, csg_measure_cube *q, void *account)
+{
+    rounds *r = s->r;
+    tally *t = s->t;
+    t->is_full |= t->latest >= r->most_of_one;
+    t->latest++;
+    bool is_last = t->is_full || q->level >= CSG_MEASURE_DEEPEST;
+    s->worker->enough = is_last ? 0 : r->share;
+    double open = r->job->settle(r->job->user, r->walk, s->worker, q, account);
+    if (open > r->share && !is_last)
+        return false;
+    t->worst = fmax(t->worst, open);
+    csg_ledger_add_leaf(s->ledger, &r->walk->context->memory, open, account, r->job->account_bytes);
+    return true;
+}
+
+/* known: what the round before has found in the parent. False: out of memory, or it is time to
+ * stop. */
+static bool visit(stroll *s, const csg_measure_cube *parent, csg_ledger_reader *known, void *out)
+{
+    rounds *r = s->r;
     const csg_rounds_job *job = r->job;
+    csg_arena *arena = &s->worker->arena;
     csg_measure_cube children[CSG_OCTANTS];
-    csg_arena_mark mark = csg_arena_get_mark(&worker->arena);
-    char *octants = csg_arena_alloc(&worker->arena, CSG_OCTANTS * job->account_bytes);
-    bool done = octants && csg_measure_divide(r->walk, worker, parent, &worker->arena, children);
+    csg_arena_mark mark = csg_arena_get_mark(arena);
+    char *octants = csg_arena_alloc(arena, CSG_OCTANTS * job->account_bytes);
+    bool done = octants && csg_measure_divide(r->walk, s->worker, parent, arena, children);
     if (!done)
         atomic_store(&r->out_of_memory, true);
     for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        csg_ledger_reader nothing = {.of = NULL}, *of_child = &nothing;
         csg_measure_cube *q = &children[o];
+        const void *before = NULL;
         char *account = account_of(r, octants, (size_t)o);
+        bool is_enough = true;
         if (q->state != CSG_CELL_SURFACE) {
             job->settle_plain(job->user, q, account);
             continue;
         }
-        t->is_full |= t->cubes >= r->most_of_one;
-        t->cubes++;
-        bool is_last = t->is_full || q->level >= CSG_MEASURE_DEEPEST;
-        worker->enough = is_last ? 0 : r->share;
-        double open = job->settle(job->user, r->walk, worker, q, account);
-        if (open <= r->share || is_last)
-            t->worst = fmax(t->worst, open);
-        else
-            done = visit(r, worker, t, q, account);
-        if (t->cubes % ASK_EVERY == 0 && csg_mesh_should_stop(r->walk->watch))
+        if (++s->t->cubes % ASK_EVERY == 0 && csg_mesh_should_stop(r->walk->watch))
             done = false;
+        double open = known->of ? csg_ledger_read(known, job->account_bytes, &before) : -1;
+        if (before)
+            is_enough = take_known(s, q, open, before, account);
+        else if (!known->of)
+            is_enough = settle(s, q, account);
+        else
+            is_enough = false;
+        if (is_enough)
+            continue;
+        if (known->of && !before)
+            of_child = known;
+        csg_ledger_add_divided(s->ledger, &r->walk->context->memory);
+        done = done && visit(s, q, of_child, account);
     }
     if (done)
         job->combine(job->user, octants, out);
-    csg_arena_release_to(&worker->arena, mark);
+    csg_arena_release_to(arena, mark);
     return done;
 }
 
@@ -77,22 +129,43 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
 {
     rounds *r = user;
     csg_measure_worker *worker = &r->walk->workers[worker_index];
+    csg_memory *memory = &r->walk->context->memory;
     tally *kept = &r->tallies[index], now = {.worst = 0};
     if (kept->worst <= r->share || kept->is_full)
         return true;
+    csg_ledger *ledger = &r->ledgers[index], *next = &r->ledgers[r->walk->count + worker_index];
+    stroll s = {.r = r, .worker = worker, .t = &now, .ledger = next};
+    csg_ledger_reader known = {.of = ledger->is_lost ? NULL : ledger};
     csg_arena_mark mark = csg_arena_get_mark(&worker->arena);
+    csg_ledger_begin(next);
     void *account = csg_arena_alloc(&worker->arena, r->job->account_bytes);
     bool done = account && !csg_mesh_should_stop(r->walk->watch) &&
-                visit(r, worker, &now, &r->walk->cubes[index], account);
+                visit(&s, &r->walk->cubes[index], &known, account);
     if (!account)
         atomic_store(&r->out_of_memory, true);
     if (done) {
-        now.looked = kept->looked + now.cubes;
+        now.looked = kept->looked + now.latest;
         *kept = now;
         memcpy(account_of(r, r->accounts, index), account, r->job->account_bytes);
+        csg_ledger_release(ledger, memory, r->job->account_bytes);
+        *ledger = csg_ledger_copy(next, memory, r->job->account_bytes);
     }
     csg_arena_release_to(&worker->arena, mark);
     return done;
+}
+
+/* Those of the last cubes of the frontier go if all are too large. */
+static void bound_ledgers(rounds *r)
+{
+    const csg_memory *memory = &r->walk->context->memory;
+    uint64_t most = (uint64_t)LEDGERS_MOST << 20, bytes = 0;
+    if (memory->limit_bytes && memory->limit_bytes / LEDGERS_SHARE < most)
+        most = memory->limit_bytes / LEDGERS_SHARE;
+    for (size_t i = 0; i < r->walk->count; i++) {
+        bytes += csg_ledger_bytes(&r->ledgers[i], r->job->account_bytes);
+        if (bytes > most)
+            csg_ledger_release(&r->ledgers[i], &r->walk->context->memory, r->job->account_bytes);
+    }
 }
 
 static void report(void *user, size_t done, size_t count)
@@ -104,6 +177,8 @@ static void report(void *user, size_t done, size_t count)
 static void begin_tallies(rounds *r)
 {
     const csg_rounds_job *job = r->job;
+    for (size_t i = 0; i < r->walk->count + r->walk->worker_count; i++)
+        r->ledgers[i] = (csg_ledger){.is_lost = true};
     for (size_t i = 0; i < r->walk->count; i++) {
         const csg_measure_cube *q = &r->walk->cubes[i];
         bool is_surface = q->state == CSG_CELL_SURFACE;
@@ -209,13 +284,13 @@ static void take_course(course *c, double share, double open)
     c->open = open;
 }
 
-/* The next share. Cubes become more by its power of 2/3 at most. False: so many are not to be had.
- */
+/* The next share. Cubes become more by its power of 2/3 at most, and those that there are already
+ * are known. False: so many are not to be had. */
 static bool choose_share(rounds *r, const course *c, double ratio, uint64_t latest, uint64_t left)
 {
-    static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-12, MARGIN = 0.65;
+    static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-6, MARGIN = 0.8;
     double step = fmax(fmin(csg_pow(MARGIN * ratio, 1 / c->falls), LEAST_STEP), LARGEST_STEP);
-    double more = (double)left / (double)latest, affordable = more * sqrt(more);
+    double more = 1 + (double)left / (double)latest, affordable = more * sqrt(more);
     if (!(affordable > 1 / LEAST_STEP))
         return false;
     r->share *= fmax(step, 1 / affordable);
@@ -237,6 +312,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
         csg_mesh_take(r->walk->watch, CSGM_STAGE_MEASURE, 0.3);
         bool done = csg_pool_run(r->walk->context->pool, r->walk->count, look_at, report, r);
         counts = count_cubes(r, &latest);
+        bound_ledgers(r);
         double ratio = conclude(r, &counts);
         if (atomic_load(&r->out_of_memory) || ratio < 0)
             status = csg_context_no_memory(r->walk->context);
@@ -261,18 +337,24 @@ csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job
     csg_memory *memory = &walk->context->memory;
     size_t count = walk->count + 1, bytes = count * sizeof(tally),
            account_bytes = count * job->account_bytes,
-           order_bytes = LEVELS * count * sizeof(uint32_t);
+           order_bytes = LEVELS * count * sizeof(uint32_t),
+           ledger_count = walk->count + walk->worker_count,
+           ledger_bytes = ledger_count * sizeof(csg_ledger);
     rounds r = {.job = job, .walk = walk, .share = job->share};
     csgm_status status;
     r.tallies = csg_memory_alloc(memory, bytes);
     r.accounts = csg_memory_alloc(memory, account_bytes);
     r.order = csg_memory_alloc(memory, order_bytes);
-    if (r.tallies && r.accounts && r.order) {
+    r.ledgers = csg_memory_alloc(memory, ledger_bytes);
+    if (r.tallies && r.accounts && r.order && r.ledgers) {
         begin_tallies(&r);
         status = go_on(&r, most_cubes);
+        for (size_t i = 0; i < ledger_count; i++)
+            csg_ledger_release(&r.ledgers[i], memory, job->account_bytes);
     } else {
         status = csg_context_no_memory(walk->context);
     }
+    csg_memory_release(memory, r.ledgers, ledger_bytes);
     csg_memory_release(memory, r.order, order_bytes);
     csg_memory_release(memory, r.accounts, account_bytes);
     csg_memory_release(memory, r.tallies, bytes);

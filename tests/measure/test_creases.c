@@ -6,6 +6,7 @@
 #include <inttypes.h>
 
 #include "measure/enclosure.h"
+#include "measure/graph_field.h"
 #include "measure/graph_support.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
@@ -22,7 +23,7 @@ typedef struct tally {
 static bool find_pieces(const void *user, const double c[3], double half, csg_taylor_pieces *out)
 {
     const mesh_case *m = user;
-    return csg_tape_taylor_pieces(&m->field->tape, c, csg_enclosure_radius(half), out);
+    return csg_graph_field_pieces(&m->field->tape, c, half, out);
 }
 
 static double length_of_difference(const double a[3], csg_vec3 b)
@@ -201,7 +202,8 @@ static int count_models(csg_blend blend, double beyond)
     mesh_case_compile(&m, joined(&m, CSG_NODE_INTERSECTION, blend, box, plane));
     const csg_vec3 o = m.field->center;
     const double c[3] = {CENTRE[0] - o.x, CENTRE[1] - o.y, CENTRE[2] - o.z};
-    int count = find_pieces(&m, c, HALF, &f) ? f.count : 0;
+    double radius = csg_enclosure_radius(HALF);
+    int count = csg_tape_taylor_pieces(&m.field->tape, c, radius, &f) ? f.count : 0;
     mesh_case_end(&m);
     return count;
 }

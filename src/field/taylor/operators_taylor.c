@@ -3,6 +3,7 @@
  */
 #include <math.h>
 
+#include "base/geometry.h"
 #include "field/taylor/taylor_walk.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/fillet.h"
@@ -141,6 +142,8 @@ static uint32_t count_touching(const csg_taylor_operand *of, const uint32_t *ord
     return m;
 }
 
+enum { OPEN_MOST = 2 /* operands of which it is open whether they touch */ };
+
 /* G is where the sum of (w + f_i - G)_+^2 is w^2, so it grows with every operand that is added, and
  * would be larger were all squares counted. So an operand that some others' level is out of reach
  * of never touches, and one that is above the level of all that may touch, all counted, always
@@ -148,7 +151,6 @@ static uint32_t count_touching(const csg_taylor_operand *of, const uint32_t *ord
  */
 static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
 {
-    enum { OPEN_MOST = 2 };
     csg_taylor_operand *of = &w->stack[w->top - node->arity];
     double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, off = 0x1p-23 * width;
@@ -219,9 +221,114 @@ static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
     return true;
 }
 
+/* Half of the sum of these squares less w^2, over w, turned: with what is known of w. */
+static csg_taylor half_sum_of_squares(const csg_taylor_walk *w, const csg_taylor *over,
+                                      uint32_t count, double width, double turn)
+{
+    static const double OF_LENGTH = 0x1p-24, OF_SHARES = 0x1p-22;
+    csg_taylor sum = csg_taylor_constant(-width * width);
+    double most = 2 * width, shares = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        csg_taylor square = csg_taylor_square(&over[i], w->radius);
+        double largest = csg_taylor_walk_most(w, &over[i]);
+        sum = csg_taylor_sum(&sum, 1, &square);
+        most += largest * (1 + largest / width);
+        shares += 1 + largest / width;
+    }
+    sum = csg_taylor_scaled(&sum, 0.5 * turn / width);
+    sum.error += OF_LENGTH * most;
+    sum.turned += OF_SHARES * shares;
+    return sum;
+}
+
+/* Where nothing but its sign matters: G is positive where the sum of (w + f_i)_+^2 is more than
+ * w^2, which is smoother than G is: of planes a polynomial of second order. False: too many
+ * operands may count or not. */
+static bool combine_signs(csg_taylor_walk *w, const csg_tape_node *node)
+{
+    csg_taylor_operand *of = &w->stack[w->top - node->arity];
+    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, off = 0x1p-23 * width;
+    csg_taylor over[CSG_TAYLOR_NODES], open[OPEN_MOST];
+    uint32_t open_at[OPEN_MOST], open_count = 0, count = 0, only = 0;
+    bool is_creased = false, possible[1 << OPEN_MOST] = {true, true, true, true};
+    for (uint32_t i = 0; i < node->arity; i++) {
+        csg_taylor above = csg_taylor_raised(csg_taylor_scaled(&of[i].f, turn), width);
+        double reach = csg_taylor_reach(&above, w->radius);
+        if (above.value < -reach)
+            continue;
+        if (above.value > reach) {
+            over[count++] = above;
+            only = i;
+            is_creased |= of[i].is_creased;
+        } else if (open_count == OPEN_MOST) {
+            return false;
+        } else {
+            open_at[open_count] = i;
+            open[open_count++] = above;
+        }
+    }
+    int which = csg_taylor_walk_choose(w, possible, 1 << open_count);
+    if (which < 0)
+        return false;
+    for (uint32_t i = 0; i < open_count; i++) {
+        bool is_in = which >> i & 1;
+        csg_taylor condition = csg_taylor_scaled(&open[i], is_in ? 1 : -1);
+        csg_taylor_walk_require(w, &condition, off);
+        if (!is_in)
+            continue;
+        over[count++] = open[i];
+        only = open_at[i];
+        is_creased |= of[open_at[i]].is_creased;
+    }
+    if (count == 1) {
+        of[0] = of[only];
+        return true;
+    }
+    of[0].f = count ? half_sum_of_squares(w, over, count, width, turn)
+                    : csg_taylor_constant(-turn * width);
+    of[0].is_known = true;
+    of[0].is_leaf = false;
+    of[0].is_creased = is_creased;
+    return true;
+}
+
+/* Where sums of squares are closer to their polynomials. G is off by the fourth power of how far
+ * gradients are apart, over w^3, and they by the square of what operands bend, over w, so that it
+ * is they at edges and G where one surface goes on from another. Along the normal they bend, as G
+ * does not: in a ball that is not small beside w they are no graph. */
+static bool prefers_squares(const csg_taylor_walk *w, const csg_tape_node *node)
+{
+    static const double SMALL = 0.2;
+    const csg_taylor_operand *of = &w->stack[w->top - node->arity];
+    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, apart = 0, bent = 0;
+    uint32_t may[CSG_TAYLOR_NODES], count = 0;
+    if (!(w->radius < SMALL * width))
+        return false;
+    for (uint32_t i = 0; i < node->arity; i++)
+        if (turn * of[i].f.value + width + csg_taylor_reach(&of[i].f, w->radius) > 0)
+            may[count++] = i;
+    for (uint32_t i = 0; i < count; i++) {
+        const csg_taylor *a = &of[may[i]].f;
+        double square = 0;
+        for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+            square += (n < 3 ? 1 : 2) * a->bend[n] * a->bend[n];
+        bent = fmax(bent, square);
+        for (uint32_t k = 0; k < i; k++) {
+            const double *b = of[may[k]].f.slope;
+            const double d[3] = {a->slope[0] - b[0], a->slope[1] - b[1], a->slope[2] - b[2]};
+            apart = fmax(apart, csg_dot3(d, d));
+        }
+    }
+    return sqrt(bent) * width < apart || count < 2;
+}
+
 bool csg_taylor_walk_round(csg_taylor_walk *w, const csg_tape_node *node)
 {
-    if (!are_known(&w->stack[w->top - node->arity], node->arity) || !combine_round(w, node))
+    bool signs = w->signs[node - w->tape->nodes] && prefers_squares(w, node);
+    if (!are_known(&w->stack[w->top - node->arity], node->arity) ||
+        !(signs ? combine_signs(w, node) : combine_round(w, node)))
         return false;
     w->top -= node->arity - 1;
     return true;

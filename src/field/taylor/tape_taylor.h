@@ -15,8 +15,8 @@
  * there. False: it is not smooth there, or not known to be. */
 bool csg_tape_taylor(const csg_tape *tape, const double c[3], double radius, csg_taylor *out);
 
-/* The same in pieces. The field is continuous over the ball. False: they are too many, or not
- * known. */
+/* The same in pieces. The field is continuous over the ball; where only its sign is enclosed, so is
+ * where it is 0. False: they are too many, or not known. */
 bool csg_tape_taylor_pieces(const csg_tape *tape, const double c[3], double radius,
                             csg_taylor_pieces *out);
 

@@ -61,6 +61,9 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_sl
     if (choice) {
         choice->signs = w->signs[index] && raise * sigma >= 0;
         choice->at_zero = w->signs[index] && !(fabs(raise) > 0);
+        choice->at_level = w->signs[index];
+        choice->level = -raise / sigma;
+        choice->stretch = 1;
         choice->ways = 1;
         choice->is_creased = false;
         choice->condition_count = 0;
@@ -68,13 +71,14 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_sl
     if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
         return false;
     *out = csg_smooth_line(&l, raise, sigma, &own);
-    double moved = csg_taylor_walk_rounding(w, parameters) + off;
+    double stretch = choice ? choice->stretch : 1;
+    double moved = stretch * (csg_taylor_walk_rounding(w, parameters) + off);
     out->f.error += moved;
     /* gradients, where what is curved is moved by that */
-    out->f.turned += OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED] +
+    out->f.turned += stretch * (OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED]) +
                      2 * moved * csg_taylor_stray(&out->f, w->radius) / w->radius;
     if (leaf->warp) /* as far as what is curved turns by that, twice */
-        out->f.turned += OF_DIRECTIONS + 2 * off / w->radius;
+        out->f.turned += stretch * (OF_DIRECTIONS + 2 * off / w->radius);
     return true;
 }
 

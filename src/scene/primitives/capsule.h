@@ -126,7 +126,7 @@ static inline bool csg_capsule_choose(const csg_smooth_leaf *l, bool is_first, c
     const double h = (double)l->own[0], r1 = (double)l->own[2], slant = (double)l->own[4];
     const double cosine = 1 / sqrt(1 + slant * slant);
     static const bool BOTH[2] = {true, true};
-    csg_smooth rho, distance, z = l->p[2], beyond;
+    csg_smooth rho, z = l->p[2], beyond;
     int way = csg_smooth_choose(l, BOTH, 2);
     if (!csg_smooth_radial(l, &rho))
         return false;
@@ -140,17 +140,14 @@ static inline bool csg_capsule_choose(const csg_smooth_leaf *l, bool is_first, c
     }
     const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &z};
     z.f.value -= is_first ? 0 : h;
-    if (!csg_smooth_norm(l, p, 3, &distance))
-        return false;
-    *out = csg_smooth_line(l, is_first ? r1 : r1 + (double)l->own[3], -1, &distance);
-    return true;
+    return csg_smooth_round(l, is_first ? r1 : r1 + (double)l->own[3], p, 3, out);
 }
 
 /* Between the ends a cone's mantle, beyond them a ball. */
 static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     const double h = (double)l->own[0], r1 = (double)l->own[2], slant = (double)l->own[4];
-    csg_smooth rho, distance, z = l->p[2];
+    csg_smooth rho, z = l->p[2];
     double across = csg_hypot(l->p[0].f.value, l->p[1].f.value);
     double center = z.f.value - slant * across, room = l->reach * (1 + fabs(slant)) * (1 + 1e-9);
     if (center - room > 0 && center + room < h) {
@@ -167,10 +164,8 @@ static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
         return csg_capsule_choose(l, center + room < h, out);
     const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &z};
     z.f.value -= is_first ? 0 : h;
-    if ((!is_first && !(center - room > h)) || !csg_smooth_norm(l, p, 3, &distance))
-        return false;
-    *out = csg_smooth_line(l, is_first ? r1 : r1 + (double)l->own[3], -1, &distance);
-    return true;
+    return (is_first || center - room > h) &&
+           csg_smooth_round(l, is_first ? r1 : r1 + (double)l->own[3], p, 3, out);
 }
 
 #endif

@@ -212,6 +212,19 @@ static inline bool csg_frustum_may_crease(const float *own, const float q[3], fl
     return b.high > own[6] || best <= reach + 2 * own[6];
 }
 
+/* What is rounded less the distance from the side, which of a cylinder is that from its axis. */
+static inline bool csg_frustum_beside(const csg_smooth_leaf *l, const csg_smooth *side,
+                                      csg_smooth *out)
+{
+    const csg_smooth *const across[2] = {&l->p[0], &l->p[1]};
+    const double round = (double)l->own[6];
+    bool is_upright = l->own[3] >= 1 && !(fabsf(l->own[4]) > 0);
+    if (is_upright)
+        return csg_smooth_round(l, round + (double)l->own[0], across, 2, out);
+    *out = csg_smooth_line(l, round, -1, side);
+    return true;
+}
+
 /* Near the rim at one end, where the frustum has its side, the cap or the rim nearest. beyond: > 0,
  * past the side's end. Where only the sign matters side and cap stand for the inside, too. */
 static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth *side,
@@ -221,7 +234,6 @@ static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth
     enum { SIDE, CAP, RIM, WAYS };
     const csg_smooth *const from_rim[2] = {over, cap};
     const double round = (double)l->own[6];
-    csg_smooth distance;
     bool is_outside = csg_smooth_is_positive(l, cap) || csg_smooth_is_positive(l, side);
     const bool possible[WAYS] = {
         !csg_smooth_is_positive(l, beyond), !csg_smooth_is_positive(l, over),
@@ -232,8 +244,7 @@ static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth
         csg_smooth_require(l, -1, beyond);
         if (is_acute)
             csg_smooth_require(l, -1, cap);
-        *out = csg_smooth_line(l, round, -1, side);
-        return true;
+        return csg_frustum_beside(l, side, out);
     case CAP:
         csg_smooth_require(l, -1, over);
         if (is_acute)
@@ -243,10 +254,7 @@ static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth
     case RIM:
         csg_smooth_require(l, 1, over);
         csg_smooth_require(l, 1, beyond);
-        if (!csg_smooth_norm(l, from_rim, 2, &distance))
-            return false;
-        *out = csg_smooth_line(l, round, -1, &distance);
-        return true;
+        return csg_smooth_round(l, round, from_rim, 2, out);
     default:
         return false;
     }
@@ -261,7 +269,7 @@ static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     const double reach = l->reach * (1 + 1e-9);
     double end = l->p[2].f.value < 0 ? -1 : 1, rim = (double)own[1] + end * (double)own[7];
     double radius = csg_hypot(l->p[0].f.value, l->p[1].f.value);
-    csg_smooth rho, distance, cap = csg_smooth_line(l, -h, end, &l->p[2]);
+    csg_smooth rho, cap = csg_smooth_line(l, -h, end, &l->p[2]);
     double over_cap = cap.f.value; /* at the centre, as the side's here: at most */
     double over_side = (radius + reach - rim) * nx + (fabs(over_cap) + reach) * fabs(nz);
     bool is_under = end * l->p[2].f.value > reach && radius + reach < rim;
@@ -284,8 +292,7 @@ static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
                       csg_smooth_is_above(l, &side, &other_cap);
     if ((is_beside && (is_deepest || csg_smooth_is_positive(l, &side))) ||
         (is_deepest && csg_smooth_is_negative(l, &side))) {
-        *out = csg_smooth_line(l, (double)own[6], -1, &side);
-        return true;
+        return csg_frustum_beside(l, &side, out);
     }
     csg_smooth over = csg_smooth_line(l, -rim, 1, &rho);
     const csg_smooth *const from_rim[2] = {&over, &cap};
@@ -293,10 +300,7 @@ static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     if (!(end * l->p[2].f.value > reach))
         return false;
     if (is_past && csg_smooth_is_positive(l, &over) && csg_smooth_is_positive(l, &cap)) {
-        if (!csg_smooth_norm(l, from_rim, 2, &distance))
-            return false;
-        *out = csg_smooth_line(l, (double)own[6], -1, &distance);
-        return true;
+        return csg_smooth_round(l, (double)own[6], from_rim, 2, out);
     }
     csg_smooth beyond = csg_smooth_scaled(l, end, end > 0 ? &past : &along);
     bool has_one_end =

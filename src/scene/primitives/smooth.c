@@ -51,6 +51,39 @@ bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int c
            (!l->with_slopes || find_slopes(l, u, count, out));
 }
 
+/* With N the length and t the one at which the level is: t - N is positive where t^2 - N^2 is,
+ * which is a polynomial of second order where the vector is linear, as N is not. (t^2 - N^2) / 2 t
+ * is as steep at the level; elsewhere (t + N) / 2 t times t - N, and so are errors. */
+static bool take_square(const csg_smooth_leaf *l, double t, const csg_smooth *const *u, int count,
+                        csg_smooth *out)
+{
+    static const double SHARE = 0.2; /* of t: in a larger ball gradients turn too far for a graph */
+    csg_taylor sum = csg_taylor_constant(-t * t);
+    if (!(l->reach < SHARE * t))
+        return false;
+    for (int i = 0; i < count; i++) {
+        csg_taylor square = csg_taylor_square(&u[i]->f, l->radius);
+        sum = csg_taylor_sum(&sum, 1, &square);
+    }
+    double most = csg_taylor_most(&sum, l->radius) + t * t;
+    l->choice->stretch = fmax(0.5 + 0.5 * sqrt(most) / t, 1) * (1 + 1e-12);
+    out->f = csg_taylor_raised(csg_taylor_scaled(&sum, -0.5 / t), l->choice->level);
+    return true;
+}
+
+bool csg_smooth_round(const csg_smooth_leaf *l, double round, const csg_smooth *const *u, int count,
+                      csg_smooth *out)
+{
+    csg_smooth distance;
+    if (l->choice && l->choice->at_level && !l->with_slopes &&
+        take_square(l, round - l->choice->level, u, count, out))
+        return true;
+    if (!csg_smooth_norm(l, u, count, &distance))
+        return false;
+    *out = csg_smooth_line(l, round, -1, &distance);
+    return true;
+}
+
 bool csg_smooth_steepest(const csg_smooth_leaf *l, double value, csg_smooth *out)
 {
     const csg_taylor *const p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
@@ -71,14 +104,9 @@ bool csg_smooth_steepest(const csg_smooth_leaf *l, double value, csg_smooth *out
 static bool round_of_box(const csg_smooth_leaf *l, const csg_smooth *const *out_there, int outside,
                          double round, csg_smooth *out)
 {
-    csg_smooth distance;
-    if (outside == 1) {
-        *out = csg_smooth_line(l, round, -1, out_there[0]);
-        return true;
-    }
-    if (!csg_smooth_norm(l, out_there, outside, &distance))
-        return false;
-    *out = csg_smooth_line(l, round, -1, &distance);
+    if (outside > 1)
+        return csg_smooth_round(l, round, out_there, outside, out);
+    *out = csg_smooth_line(l, round, -1, out_there[0]);
     return true;
 }
 

@@ -22,8 +22,11 @@ enum { CSG_SMOOTH_WAYS = 4, CSG_SMOOTH_CONDITIONS = 3 };
  * `signs` says that this is enough has its sign, wherever no condition is negative; and everywhere
  * one of the ways is. */
 typedef struct csg_smooth_choice {
-    bool signs;      /* inside and outside matter alone, and what is inside is so in the end */
-    bool at_zero;    /* inside and outside of the primitive itself matter alone */
+    bool signs;    /* inside and outside matter alone, and what is inside is so in the end */
+    bool at_zero;  /* inside and outside of the primitive itself matter alone */
+    bool at_level; /* whether the primitive's value is above `level` or below matters alone */
+    double level;
+    double stretch;  /* out: where at_level, errors of the primitive's own values count so often */
     int way;         /* which one is asked for */
     int ways;        /* out: how many there are */
     bool is_creased; /* out: the field's gradient may jump in the ball, from one of them to another
@@ -77,6 +80,10 @@ static inline csg_smooth csg_smooth_line(const csg_smooth_leaf *l, double by, do
 /* The length of the vector of these. False: it may be 0 in the ball. */
 bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int count,
                      csg_smooth *out);
+
+/* `round` less that length, or what is above the level where that is. */
+bool csg_smooth_round(const csg_smooth_leaf *l, double round, const csg_smooth *const *u, int count,
+                      csg_smooth *out);
 
 /* A function of own coordinates that has this value at the ball's centre and is nowhere steeper
  * than 1: no more is known of it. That is enough for a blend in which it has little part. Only of

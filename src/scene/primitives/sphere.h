@@ -79,11 +79,7 @@ static inline bool csg_sphere_may_crease(const float *own, const float q[3], flo
 static inline bool csg_sphere_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     const csg_smooth *const p[3] = {&l->p[0], &l->p[1], &l->p[2]};
-    csg_smooth distance;
-    if (!csg_smooth_norm(l, p, 3, &distance))
-        return false;
-    *out = csg_smooth_line(l, (double)l->own[0], -1, &distance);
-    return true;
+    return csg_smooth_round(l, (double)l->own[0], p, 3, out);
 }
 
 #endif

@@ -149,7 +149,7 @@ static inline bool csg_torus_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     double side = l->p[1].f.value < 0 ? -1 : 1;
     csg_smooth turned = csg_smooth_scaled(l, side * cosine, &l->p[1]);
     csg_smooth past = csg_smooth_sum(l, &turned, -sine, &l->p[0]); /* the end, > 0 */
-    csg_smooth rho, x, y, distance;
+    csg_smooth rho, x, y;
     bool is_whole = !(cosine > -1);
     bool has_side = csg_smooth_is_positive(l, &l->p[1]) || csg_smooth_is_negative(l, &l->p[1]);
     if (is_whole || (has_side && csg_smooth_is_negative(l, &past))) {
@@ -157,18 +157,14 @@ static inline bool csg_torus_smooth(const csg_smooth_leaf *l, csg_smooth *out)
         if (!csg_smooth_radial(l, &rho))
             return false;
         x = csg_smooth_line(l, -big, 1, &rho);
-        if (!csg_smooth_norm(l, to_ring, 2, &distance))
-            return false;
+        return csg_smooth_round(l, small, to_ring, 2, out);
     } else {
         const csg_smooth *const to_end[3] = {&x, &y, &l->p[2]};
         x = csg_smooth_line(l, -big * cosine, 1, &l->p[0]);
         y = csg_smooth_line(l, -big * sine, side, &l->p[1]);
-        if (!has_side || !csg_smooth_is_positive(l, &past) ||
-            !csg_smooth_norm(l, to_end, 3, &distance))
-            return false;
+        return has_side && csg_smooth_is_positive(l, &past) &&
+               csg_smooth_round(l, small, to_end, 3, out);
     }
-    *out = csg_smooth_line(l, small, -1, &distance);
-    return true;
 }
 
 #endif
