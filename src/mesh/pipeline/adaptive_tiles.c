@@ -96,7 +96,8 @@ static csgm_status check_room(const csg_extraction *x, const csg_joined *joined,
 {
     const csg_memory *memory = &x->context->memory;
     const csg_begun_samples *s = &joined->samples;
-    uint64_t spare = s->vertex_capacity - s->vertex_count + s->other_capacity - s->other_count;
+    uint64_t spare = s->vertex_capacity - s->vertex_count + s->block_count * CSG_SAMPLES_OF_BLOCK -
+                     s->other_count;
     uint64_t needed = atomic_load(&memory->used_bytes) - spare * sizeof(csg_surface_sample) +
                       cells / 8 * 6 * sizeof(csg_surface_sample);
     uint64_t found = csg_arena_bytes(&x->judge->kept); /* is forgotten before what is left begins */

@@ -152,29 +152,60 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
     add_missed(d);
 }
 
+bool csg_begun_samples_add_other(csg_begun_samples *s, csg_memory *memory,
+                                 const csg_surface_sample *sample)
+{
+    size_t place = s->other_count % CSG_SAMPLES_OF_BLOCK;
+    if (!place) {
+        csg_sample_block *block = csg_memory_alloc(memory, sizeof *block);
+        if (!block)
+            return false;
+        block->next = NULL;
+        *(s->last ? &s->last->next : &s->others) = block;
+        s->last = block;
+        s->block_count++;
+    }
+    s->last->items[place] = *sample;
+    s->other_count++;
+    return true;
+}
+
+/* How many of the others the first block has. */
+static size_t count_of_first(const csg_begun_samples *s)
+{
+    return s->other_count < CSG_SAMPLES_OF_BLOCK ? s->other_count : CSG_SAMPLES_OF_BLOCK;
+}
+
+static void drop_first(csg_begun_samples *s, csg_memory *memory)
+{
+    csg_sample_block *block = s->others;
+    s->other_count -= count_of_first(s);
+    s->others = block->next;
+    s->last = s->others ? s->last : NULL;
+    s->block_count--;
+    csg_memory_release(memory, block, sizeof *block);
+}
+
 void csg_begun_samples_release(csg_begun_samples *s, csg_memory *memory)
 {
     csg_memory_release(memory, s->of_vertices, s->vertex_capacity * sizeof *s->of_vertices);
-    csg_memory_release(memory, s->others, s->other_capacity * sizeof *s->others);
-    s->of_vertices = s->others = NULL;
-    s->vertex_count = s->vertex_capacity = s->other_count = s->other_capacity = 0;
+    while (s->others)
+        drop_first(s, memory);
+    s->of_vertices = NULL;
+    s->vertex_count = s->vertex_capacity = 0;
 }
 
 bool csg_decimation_hold_samples(csg_decimation *d, size_t needed)
 {
     csg_begun_samples *begun = d->begun;
-    if (!begun)
-        return csg_memory_reserve(d->remesh->memory, (void **)&d->samples, &d->sample_capacity,
-                                  needed, sizeof *d->samples);
-    needed += begun->vertex_count + begun->other_count;
-    if (!csg_memory_reserve(d->remesh->memory, (void **)&begun->of_vertices,
-                            &begun->vertex_capacity, needed, sizeof *d->samples))
-        return false;
-    d->samples = begun->of_vertices;
-    d->sample_capacity = begun->vertex_capacity;
-    begun->of_vertices = NULL;
-    begun->vertex_capacity = 0;
-    return true;
+    if (begun && !d->samples) {
+        d->samples = begun->of_vertices;
+        d->sample_capacity = begun->vertex_capacity;
+        begun->of_vertices = NULL;
+        begun->vertex_capacity = 0;
+    }
+    return csg_memory_reserve(d->remesh->memory, (void **)&d->samples, &d->sample_capacity, needed,
+                              sizeof *d->samples);
 }
 
 /* The samples may be the next ones of d->samples themselves. */
@@ -188,14 +219,24 @@ static void take(csg_decimation *d, const csg_surface_sample *samples, size_t co
     }
 }
 
-void csg_decimation_take_samples(csg_decimation *d)
+bool csg_decimation_take_samples(csg_decimation *d)
 {
+    csg_begun_samples *begun = d->begun;
     memset(d->first_sample, 0xFF, d->remesh->corners.triangle_count * sizeof *d->first_sample);
-    take(d, d->samples, d->begun->vertex_count);
+    take(d, d->samples, begun->vertex_count);
     d->vertex_samples = d->sample_count;
-    take(d, d->begun->others, d->begun->other_count);
-    csg_begun_samples_release(d->begun, d->remesh->memory);
+    while (begun->others) {
+        size_t count = count_of_first(begun);
+        if (!csg_decimation_hold_samples(d, d->sample_count + count))
+            return false;
+        take(d, begun->others->items, count);
+        drop_first(begun, d->remesh->memory);
+    }
+    csg_begun_samples_release(begun, d->remesh->memory);
+    if (!csg_decimation_hold_samples(d, d->sample_count + (d->missed ? d->missed->count : 0)))
+        return false;
     add_missed(d);
+    return true;
 }
 
 /* ---- handing over ------------------------------------------------------------------------------

@@ -39,14 +39,28 @@ typedef struct csg_surface_sample {
     int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
 
+enum { CSG_SAMPLES_OF_BLOCK = 8192 };
+
+/* All blocks but the last one are full. */
+typedef struct csg_sample_block {
+    struct csg_sample_block *next;
+    csg_surface_sample items[CSG_SAMPLES_OF_BLOCK];
+} csg_sample_block;
+
 /* Samples of a mesh that was thinned out in parts before it was joined: `next` is the triangle that
- * answers for one. looks: of those that were vertices; NULL as remesh->looks. */
+ * answers for one. looks: of those that were vertices; NULL as remesh->looks. The others are in
+ * blocks, which are given back one by one while they are put behind those of vertices: there may be
+ * no room for all of them twice. */
 typedef struct csg_begun_samples {
-    csg_surface_sample *of_vertices, *others;
+    csg_surface_sample *of_vertices;
+    csg_sample_block *others, *last;
     csg_look_at_vertex *looks;
-    size_t vertex_count, vertex_capacity, other_count, other_capacity, look_capacity;
+    size_t vertex_count, vertex_capacity, other_count, block_count, look_capacity;
 } csg_begun_samples;
 
+/* One more of the others. False: out of memory. */
+bool csg_begun_samples_add_other(csg_begun_samples *samples, csg_memory *memory,
+                                 const csg_surface_sample *sample);
 /* All but the looks. */
 void csg_begun_samples_release(csg_begun_samples *samples, csg_memory *memory);
 
@@ -114,13 +128,13 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
     return d->region_of[vertex] == d->region;
 }
 
-/* Room for so many samples, and for those that the mesh has begun with: these stay where they are,
- * since there may be no room for them twice. False: out of memory. */
+/* Room for so many samples; those of vertices that the mesh has begun with come first, and stay
+ * where they are. False: out of memory. */
 bool csg_decimation_hold_samples(csg_decimation *d, size_t needed);
 /* normals: the mean of the triangles at each vertex. */
 void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
-/* Those that the mesh has begun with. */
-void csg_decimation_take_samples(csg_decimation *d);
+/* Those that the mesh has begun with. False: out of memory. */
+bool csg_decimation_take_samples(csg_decimation *d);
 /* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
  * left. items: its triangles, of which some may be of others; NULL: all there are. CSGM_OK,
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */

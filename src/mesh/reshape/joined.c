@@ -181,11 +181,7 @@ static bool keep_sample(tile *t, uint32_t sample, uint32_t triangle)
     csg_surface_sample kept = d->samples[sample];
     kept.next = triangle;
     if (sample >= d->vertex_samples) {
-        if (!csg_memory_reserve(memory, (void **)&s->others, &s->other_capacity, s->other_count + 1,
-                                sizeof kept))
-            return false;
-        s->others[s->other_count++] = kept;
-        return true;
+        return csg_begun_samples_add_other(s, memory, &kept);
     }
     if (!csg_memory_reserve(memory, (void **)&s->of_vertices, &s->vertex_capacity,
                             s->vertex_count + 1, sizeof kept) ||

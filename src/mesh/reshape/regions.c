@@ -460,7 +460,8 @@ static bool begin(cutting *c, bool in_cubes)
     return done;
 }
 
-static void end(cutting *c)
+/* What is needed for cubes alone: what comes after them needs as much. */
+static void end_cubes(cutting *c)
 {
     const csg_remesh *r = c->d->remesh;
     size_t triangles = r->corners.triangle_count, vertices = r->corners.vertex_count;
@@ -477,10 +478,17 @@ static void end(cutting *c)
     csg_memory_release(memory, c->inside, triangles * sizeof *c->inside);
     csg_memory_release(memory, c->slots, triangles * sizeof *c->slots);
     csg_memory_release(memory, c->boxes, triangles * sizeof *c->boxes);
-    csg_memory_release(memory, c->region_of, vertices * sizeof *c->region_of);
     csg_memory_release(memory, c->items, c->item_capacity * sizeof *c->items);
     csg_memory_release(memory, c->regions, c->region_capacity * sizeof *c->regions);
     csg_arena_reset(&c->arena);
+    *c = (cutting){.d = c->d, .region_of = c->region_of, .is_reported = c->is_reported};
+}
+
+static void end(cutting *c)
+{
+    end_cubes(c);
+    csg_memory_release(c->d->remesh->memory, c->region_of,
+                       c->d->remesh->corners.vertex_count * sizeof *c->region_of);
     c->d->region_of = NULL;
 }
 
@@ -497,8 +505,10 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
         CSG_ZONE(r->context, "cubes");
         status = run_round(&c, round, ROUND_SHARE);
     }
-    if (status == CSGM_OK && in_cubes)
+    if (status == CSGM_OK && in_cubes) {
+        end_cubes(&c);
         status = make_tree_again(r);
+    }
     if (status == CSGM_OK) {
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);
