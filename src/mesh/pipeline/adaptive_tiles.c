@@ -15,9 +15,9 @@ enum { BYTES_PER_BRICK = 4096, LEAST_BRICKS = 256 };
 /* Of the limit: what all of it may take, and what a tile may. */
 enum { WHOLE_SHARE = 2, TILE_SHARE = 16 };
 
-/* What a vertex that is left takes when all tiles are there, with its two triangles, at least:
- * places, neighbours, quadrics, tree and cubes. */
-enum { LEAST_BYTES_PER_VERTEX = 256 };
+/* What a vertex that is left takes when all tiles are there, with its two triangles, at least, and
+ * more than before: places, neighbours and quadrics. */
+enum { LEAST_BYTES_PER_VERTEX = 128 };
 
 size_t csg_mesh_tile_bricks(const csg_bricks *b, const csg_mesh_goal *goal, uint64_t limit_bytes)
 {
