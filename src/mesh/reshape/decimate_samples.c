@@ -23,8 +23,7 @@ static void add_sample(csg_decimation *d, const float at[3], csg_vec3 normal, ui
     memcpy(d->samples[s].at, at, sizeof d->samples[s].at);
     for (int axis = 0; axis < 3; axis++)
         d->samples[s].normal[axis] = (int16_t)lrint(INT16_MAX * parts[axis]);
-    d->samples[s].next = d->first_sample[triangle];
-    d->first_sample[triangle] = s;
+    csg_sample_put(d, s, triangle);
 }
 
 /* Zero where it leads over a crease. */
@@ -208,14 +207,26 @@ bool csg_decimation_hold_samples(csg_decimation *d, size_t needed)
                               sizeof *d->samples);
 }
 
+/* Room for so many more of the samples that there are to be. Arrays grow by an eighth at least;
+ * what would be too much at last would never be given back, so the last step is one that it fits.
+ */
+static bool hold_more(csg_decimation *d, size_t more, size_t all)
+{
+    size_t needed = d->sample_count + more, next = d->sample_capacity + d->sample_capacity / 8 + 1;
+    if (needed <= d->sample_capacity)
+        return true;
+    if (next + next / 8 + 1 > all)
+        needed = all;
+    return csg_decimation_hold_samples(d, needed);
+}
+
 /* The samples may be the next ones of d->samples themselves. */
 static void take(csg_decimation *d, const csg_surface_sample *samples, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        uint32_t s = d->sample_count++, triangle = samples[i].next;
+        uint32_t s = d->sample_count++;
         d->samples[s] = samples[i];
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        csg_sample_put(d, s, csg_surface_sample_next(&samples[i]));
     }
 }
 
@@ -223,17 +234,19 @@ bool csg_decimation_take_samples(csg_decimation *d)
 {
     csg_begun_samples *begun = d->begun;
     memset(d->first_sample, 0xFF, d->remesh->corners.triangle_count * sizeof *d->first_sample);
+    size_t missed = d->missed ? d->missed->count : 0;
+    size_t all = begun->vertex_count + begun->other_count + missed;
     take(d, d->samples, begun->vertex_count);
     d->vertex_samples = d->sample_count;
     while (begun->others) {
         size_t count = count_of_first(begun);
-        if (!csg_decimation_hold_samples(d, d->sample_count + count))
+        if (!hold_more(d, count, all))
             return false;
         take(d, begun->others->items, count);
         drop_first(begun, d->remesh->memory);
     }
     csg_begun_samples_release(begun, d->remesh->memory);
-    if (!csg_decimation_hold_samples(d, d->sample_count + (d->missed ? d->missed->count : 0)))
+    if (!hold_more(d, missed, all))
         return false;
     add_missed(d);
     return true;
@@ -393,7 +406,7 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
 {
     csg_collapse_room *room = d->room;
     uint32_t before = CSG_CORNER_NONE, s = d->first_sample[triangle];
-    for (; s != CSG_CORNER_NONE; before = s, s = d->samples[s].next) {
+    for (; s != CSG_CORNER_NONE; before = s, s = csg_sample_next(d, s)) {
         uint32_t owner = choose_owner(d, s, kept);
         if (owner == CSG_CORNER_NONE)
             break;
@@ -404,9 +417,8 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
         room->owner[room->owner_count++] = owner;
     }
     if (s != CSG_CORNER_NONE && before != CSG_CORNER_NONE) {
-        d->samples[before].next = d->samples[s].next;
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        csg_surface_sample_set_next(&d->samples[before], csg_sample_next(d, s));
+        csg_sample_put(d, s, triangle);
     }
     return s == CSG_CORNER_NONE;
 }
@@ -483,25 +495,28 @@ void csg_decimation_find_seen(csg_decimation *d)
     memset(room->seen, 0, room->count * sizeof *room->seen);
     for (uint32_t i = 0; i < room->count + room->gone; i++)
         for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
-             s = d->samples[s].next)
+             s = csg_sample_next(d, s))
             see(d, s, room->owner[n++]);
 }
 
 void csg_decimation_hand_over(csg_decimation *d)
 {
     csg_collapse_room *room = d->room;
-    uint32_t chain = CSG_CORNER_NONE, *end = &chain;
+    uint32_t chain = CSG_CORNER_NONE, last = CSG_CORNER_NONE;
     for (uint32_t i = 0; i < room->count + room->gone; i++) {
-        *end = d->first_sample[room->triangle[i]];
+        uint32_t s = d->first_sample[room->triangle[i]];
         d->first_sample[room->triangle[i]] = CSG_CORNER_NONE;
-        while (*end != CSG_CORNER_NONE)
-            end = &d->samples[*end].next;
+        if (last == CSG_CORNER_NONE)
+            chain = s;
+        else
+            csg_surface_sample_set_next(&d->samples[last], s);
+        for (; s != CSG_CORNER_NONE; s = csg_sample_next(d, s))
+            last = s;
     }
     for (size_t i = 0; chain != CSG_CORNER_NONE; i++) {
-        uint32_t s = chain, triangle = room->triangle[room->owner[i]];
-        chain = d->samples[s].next;
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        uint32_t s = chain;
+        chain = csg_sample_next(d, s);
+        csg_sample_put(d, s, room->triangle[room->owner[i]]);
     }
 }
 
@@ -522,7 +537,7 @@ bool csg_decimation_measure(const csg_decimation *d, double error, csg_far_place
             continue;
         const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
                                csg_remesh_corner(r, 3 * t + 2)};
-        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->samples[s].next) {
+        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = csg_sample_next(d, s)) {
             csg_vec3 p = csg_sample_at(d, s);
             double distance = distance_of(d, p, v, *most);
             if (!(distance > error))

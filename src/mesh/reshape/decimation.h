@@ -5,6 +5,8 @@
 #ifndef CSG_MESH_RESHAPE_DECIMATION_H
 #define CSG_MESH_RESHAPE_DECIMATION_H
 
+#include <string.h>
+
 #include "mesh/distance/missed.h"
 #include "mesh/reshape/quadric.h"
 
@@ -33,11 +35,25 @@ typedef struct csg_facets {
     float square[CSG_RING_MOST], over[CSG_RING_MOST], weight[2][CSG_RING_MOST];
 } csg_facets;
 
+/* There are more of them than of anything else: so places and links are kept as bytes, since the
+ * alignment of their types would add two of these to each. */
 typedef struct csg_surface_sample {
-    float at[3];
-    uint32_t next;     /* in its triangle's list */
+    uint8_t at[3 * sizeof(float)];
+    uint8_t next[sizeof(uint32_t)]; /* in its triangle's list */
     int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
+
+static inline uint32_t csg_surface_sample_next(const csg_surface_sample *sample)
+{
+    uint32_t next;
+    memcpy(&next, sample->next, sizeof next);
+    return next;
+}
+
+static inline void csg_surface_sample_set_next(csg_surface_sample *sample, uint32_t next)
+{
+    memcpy(sample->next, &next, sizeof next);
+}
 
 enum { CSG_SAMPLES_OF_BLOCK = 8192 };
 
@@ -161,7 +177,22 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {
-    return csg_vec3_from_floats(d->samples[sample].at);
+    float at[3];
+    memcpy(at, d->samples[sample].at, sizeof at);
+    return csg_vec3_from_floats(at);
+}
+
+/* The next one of its triangle's; NONE ends the list. */
+static inline uint32_t csg_sample_next(const csg_decimation *d, uint32_t sample)
+{
+    return csg_surface_sample_next(&d->samples[sample]);
+}
+
+/* Puts it before those that the triangle answers for. */
+static inline void csg_sample_put(csg_decimation *d, uint32_t sample, uint32_t triangle)
+{
+    csg_surface_sample_set_next(&d->samples[sample], d->first_sample[triangle]);
+    d->first_sample[triangle] = sample;
 }
 
 static inline csg_vec3 csg_sample_normal(const csg_decimation *d, uint32_t sample)

@@ -511,6 +511,8 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     if (in_cubes)
         csg_triangle_tree_forget(&r->tree); /* each cube has its own */
     csgm_status status = begin(&c, in_cubes) ? CSGM_OK : CSGM_ERR_MEMORY;
+    if (status == CSGM_OK && !in_cubes && !r->tree.nodes)
+        status = make_tree_again(r);
     for (int round = 0; round < ROUNDS && in_cubes && status == CSGM_OK; round++) {
         CSG_ZONE(r->context, "cubes");
         status = run_round(&c, round, ROUND_SHARE);
