@@ -194,7 +194,7 @@ static bool make_cubes(cutting *c, int round)
 {
     const csg_remesh *r = c->d->remesh;
     uint32_t count = r->corners.triangle_count, n = 0;
-    uint32_t *live = csg_arena_alloc(&c->arena, count * sizeof *live);
+    uint32_t *live = csg_arena_alloc(&c->arena, r->corners.live * sizeof *live);
     if (!live)
         return false;
     c->item_count = c->region_count = 0;
