@@ -8,6 +8,10 @@
  * range; the ranges are chosen by a count of all hashes, so that the corners of each fit into
  * memory. Sets of triangles that edges join (union-find) are the only thing that is kept of all:
  * four bytes each.
+ *
+ * Closed manifolds, which most files are, take one pass, and in the order that meshes are made in
+ * no memory but that of the border of what has been seen, and a bit for each vertex: they are
+ * looked at as they are while they are made (mesh/figures).
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -23,6 +27,7 @@
 #include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"
+#include "mesh/figures/figures.h"
 #include "mesh/figures/measures.h"
 #include "mesh/inspect.h"
 
@@ -302,6 +307,103 @@ static csgm_status close_vertices(scan *s)
     return CSGM_OK;
 }
 
+/* ---- closed manifolds ------------------------------------------------------------------ */
+
+enum { RUN_TRIANGLES = 1 << 14 };
+
+/* Triangles on their way to the figures, some at a time. */
+typedef struct gathering {
+    csg_mesh_receiver to;
+    uint64_t first, count; /* triangles handed on, and at hand */
+    uint64_t met, largest; /* vertices with smaller numbers came in runs before; and at hand */
+    uint32_t *vertices;
+    float *places;
+} gathering;
+
+static csgm_status begin_nothing(void *user, const csg_mesh_counts *counts)
+{
+    (void)user;
+    (void)counts;
+    return CSGM_OK;
+}
+
+static bool put_nothing(void *user, const csg_mesh_run *run)
+{
+    (void)user;
+    (void)run;
+    return true;
+}
+
+/* Vertices that no run before has are the run's own, unless the file has them in no order. */
+static void hand_on(gathering *g)
+{
+    csg_mesh_run run = {.first_vertex = g->met,
+                        .first_triangle = g->first,
+                        .triangle_count = g->count,
+                        .corners = g->places,
+                        .joined = g->vertices};
+    uint64_t end = g->largest + 1 > g->met ? g->largest + 1 : g->met;
+    if (end - g->met <= 3 * g->count)
+        run.vertex_count = end - g->met;
+    g->to.put(g->to.user, &run);
+    g->met = end;
+    g->first += g->count;
+    g->count = 0;
+}
+
+static csgm_status gather(scan *s, void *user, const csg_runs_triangle *t, const key k[3])
+{
+    gathering *g = user;
+    (void)s;
+    (void)k;
+    for (size_t c = 0; c < 3; c++) {
+        g->vertices[3 * g->count + c] = t->vertex[c];
+        memcpy(g->places + 9 * g->count + 3 * c, t->at[c], sizeof t->at[c]);
+        g->largest = t->vertex[c] > g->largest ? t->vertex[c] : g->largest;
+    }
+    if (++g->count == RUN_TRIANGLES)
+        hand_on(g);
+    return CSGM_OK;
+}
+
+static csgm_status look_at_manifold(scan *s, csg_mesh_figures *figures, gathering *g, bool *is_one)
+{
+    const csg_mesh_counts counts = {.vertex_count = s->runs->vertex_count,
+                                    .triangle_count = s->triangles,
+                                    .origin = s->runs->origin,
+                                    .bounds = s->box};
+    g->to = csg_mesh_figures_receiver(figures);
+    csgm_status status = g->to.begin(g->to.user, &counts);
+    if (!status)
+        status = pass(s, true, gather, g);
+    if (!status && g->count)
+        hand_on(g);
+    *is_one = !status && csg_mesh_figures_get(figures, s->check);
+    return status;
+}
+
+/* *is_one: it is a closed manifold, whose figures are in s->check; else, also where there is too
+ * little memory, nothing has changed. */
+static csgm_status try_manifold(scan *s, bool *is_one)
+{
+    csg_memory *memory = &s->runs->context->memory;
+    const csg_mesh_receiver nobody = {.begin = begin_nothing, .put = put_nothing};
+    const size_t vertex_bytes = RUN_TRIANGLES * 3 * sizeof(uint32_t);
+    const size_t place_bytes = RUN_TRIANGLES * 9 * sizeof(float);
+    gathering g = {.vertices = csg_memory_alloc(memory, vertex_bytes),
+                   .places = csg_memory_alloc(memory, place_bytes)};
+    csg_mesh_figures *figures = NULL;
+    csgm_status status = CSGM_OK;
+    *is_one = false;
+    if (g.vertices && g.places && csg_mesh_figures_make(s->runs->context, &nobody, 1, &figures))
+        status = look_at_manifold(s, figures, &g, is_one);
+    if (figures)
+        csg_mesh_figures_destroy(figures);
+    csg_memory_release(memory, g.vertices, vertex_bytes);
+    csg_memory_release(memory, g.places, place_bytes);
+    return status;
+}
+
 /* ---- all of it ------------------------------------------------------------------------- */
 
 /* Room for the triangles' sets, and for as many corners as the rest allows, up to all. */
@@ -374,6 +476,15 @@ static void count_components(scan *s)
     s->check->components = roots - s->unsound; /* each of those is alone */
 }
 
+static void fill_in(const scan *s, csgm_file_figures *out)
+{
+    out->vertices = s->runs->names_vertices ? s->runs->vertex_count : s->vertices;
+    out->triangles = s->triangles;
+    out->has_normals = s->runs->has_normals;
+    out->has_colors = s->runs->has_colors;
+    out->check = *s->check;
+}
+
 /* With vertices by number or by place. The counts array is the caller's. */
 static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_place,
                              uint64_t *counts, csgm_file_figures *out)
@@ -383,6 +494,13 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
     s.box = csg_box_empty();
     memset(counts, 0, HASHES * sizeof *counts);
     csgm_status status = pass(&s, true, count_triangle, NULL);
+    bool is_manifold = false;
+    if (!status && !by_place && s.triangles && !s.unsound)
+        status = try_manifold(&s, &is_manifold);
+    if (!status && is_manifold) {
+        fill_in(&s, out);
+        return status;
+    }
     csg_mesh_measures measures = csg_mesh_measures_begin(s.box);
     if (!status && !take_arrays(&s))
         status = csg_context_no_memory(runs->context);
@@ -392,14 +510,10 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
         count_components(&s);
         csg_mesh_measures_end(&measures, s.box, runs->origin, &check);
         check.degenerate_triangles = s.unsound;
-        out->vertices = runs->names_vertices ? runs->vertex_count : s.vertices;
-        out->triangles = s.triangles;
-        check.unused_vertices = out->vertices - s.used;
+        check.unused_vertices = (runs->names_vertices ? runs->vertex_count : s.vertices) - s.used;
         check.euler = (int64_t)s.used - (int64_t)s.edges + (int64_t)(s.triangles - s.unsound);
         check.genus = (int64_t)check.components - check.euler / 2;
-        out->has_normals = runs->has_normals;
-        out->has_colors = runs->has_colors;
-        out->check = check;
+        fill_in(&s, out);
     }
     release_arrays(&s);
     return status;
