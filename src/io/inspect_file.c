@@ -145,14 +145,21 @@ static csgm_status count_triangle(scan *s, void *user, const csg_runs_triangle *
     bool sound = is_sound(k);
     s->triangles++;
     s->unsound += !sound;
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3 && sound; c++) {
         csg_vec3 p = place(t, c);
-        s->counts[hash_of(&k[c]) >> (64 - HASH_BITS)]++;
-        if (sound)
-            s->box = csg_box_hull(s->box, (csg_box){p, p});
+        s->box = csg_box_hull(s->box, (csg_box){p, p});
     }
     return s->triangles > UINT32_MAX / 3 ? csg_mesh_too_large(s->runs->context, s->triangles)
                                          : CSGM_OK;
+}
+
+static csgm_status count_hashes(scan *s, void *user, const csg_runs_triangle *t, const key k[3])
+{
+    (void)user;
+    (void)t;
+    for (int c = 0; c < 3; c++)
+        s->counts[hash_of(&k[c]) >> (64 - HASH_BITS)]++;
+    return CSGM_OK;
 }
 
 /* ---- the other passes: corners of some of the vertices ----------------------------------- */
@@ -309,13 +316,14 @@ static csgm_status close_vertices(scan *s)
 
 /* ---- closed manifolds ------------------------------------------------------------------ */
 
-enum { RUN_TRIANGLES = 1 << 14 };
+enum { RUN_TRIANGLES = 1 << 11 };
 
 /* Triangles on their way to the figures, some at a time. */
 typedef struct gathering {
     csg_mesh_receiver to;
     uint64_t first, count; /* triangles handed on, and at hand */
-    uint64_t met, largest; /* vertices with smaller numbers came in runs before; and at hand */
+    uint64_t owned;        /* vertices of runs before */
+    uint64_t all_triangles, all_vertices;
     uint32_t *vertices;
     float *places;
 } gathering;
@@ -334,20 +342,23 @@ static bool put_nothing(void *user, const csg_mesh_run *run)
     return true;
 }
 
-/* Vertices that no run before has are the run's own, unless the file has them in no order. */
+/* A run has as large a part of the vertices for its own as it is of the triangles: where both stand
+ * in one order, as meshes are made, most links are closed in it, and do not come to the seam. */
 static void hand_on(gathering *g)
 {
-    csg_mesh_run run = {.first_vertex = g->met,
-                        .first_triangle = g->first,
-                        .triangle_count = g->count,
-                        .corners = g->places,
-                        .joined = g->vertices};
-    uint64_t end = g->largest + 1 > g->met ? g->largest + 1 : g->met;
-    if (end - g->met <= 3 * g->count)
-        run.vertex_count = end - g->met;
+    uint64_t triangles = g->first + g->count;
+    uint64_t end =
+        (uint64_t)((double)triangles / (double)g->all_triangles * (double)g->all_vertices);
+    end = end < g->owned ? g->owned : end > g->all_vertices ? g->all_vertices : end;
+    const csg_mesh_run run = {.first_vertex = g->owned,
+                              .vertex_count = end - g->owned,
+                              .first_triangle = g->first,
+                              .triangle_count = g->count,
+                              .corners = g->places,
+                              .joined = g->vertices};
     g->to.put(g->to.user, &run);
-    g->met = end;
-    g->first += g->count;
+    g->owned = end;
+    g->first = triangles;
     g->count = 0;
 }
 
@@ -359,7 +370,6 @@ static csgm_status gather(scan *s, void *user, const csg_runs_triangle *t, const
     for (size_t c = 0; c < 3; c++) {
         g->vertices[3 * g->count + c] = t->vertex[c];
         memcpy(g->places + 9 * g->count + 3 * c, t->at[c], sizeof t->at[c]);
-        g->largest = t->vertex[c] > g->largest ? t->vertex[c] : g->largest;
     }
     if (++g->count == RUN_TRIANGLES)
         hand_on(g);
@@ -390,7 +400,9 @@ static csgm_status try_manifold(scan *s, bool *is_one)
     const csg_mesh_receiver nobody = {.begin = begin_nothing, .put = put_nothing};
     const size_t vertex_bytes = RUN_TRIANGLES * 3 * sizeof(uint32_t);
     const size_t place_bytes = RUN_TRIANGLES * 9 * sizeof(float);
-    gathering g = {.vertices = csg_memory_alloc(memory, vertex_bytes),
+    gathering g = {.all_triangles = s->triangles,
+                   .all_vertices = s->runs->vertex_count,
+                   .vertices = csg_memory_alloc(memory, vertex_bytes),
                    .places = csg_memory_alloc(memory, place_bytes)};
     csg_mesh_figures *figures = NULL;
     csgm_status status = CSGM_OK;
@@ -405,6 +417,14 @@ static csgm_status try_manifold(scan *s, bool *is_one)
 }
 
 /* ---- all of it ------------------------------------------------------------------------- */
+
+static bool take_counts(scan *s)
+{
+    s->counts = csg_memory_alloc(&s->runs->context->memory, HASHES * sizeof *s->counts);
+    if (s->counts)
+        memset(s->counts, 0, HASHES * sizeof *s->counts);
+    return s->counts != NULL;
+}
 
 /* Room for the triangles' sets, and for as many corners as the rest allows, up to all. */
 static bool take_arrays(scan *s)
@@ -431,6 +451,7 @@ static bool take_arrays(scan *s)
 static void release_arrays(scan *s)
 {
     csg_memory *memory = &s->runs->context->memory;
+    csg_memory_release(memory, s->counts, HASHES * sizeof *s->counts);
     csg_memory_release(memory, s->parents, (size_t)s->triangles * sizeof *s->parents);
     csg_memory_release(memory, s->corners, (size_t)s->corner_room * sizeof *s->corners);
     csg_memory_release(memory, s->chains, (size_t)s->chain_count * sizeof *s->chains);
@@ -485,14 +506,13 @@ static void fill_in(const scan *s, csgm_file_figures *out)
     out->check = *s->check;
 }
 
-/* With vertices by number or by place. The counts array is the caller's. */
+/* With vertices by number or by place. */
 static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_place,
-                             uint64_t *counts, csgm_file_figures *out)
+                             csgm_file_figures *out)
 {
     csgm_mesh_check check = {0};
-    scan s = {.runs = runs, .kind = kind, .by_place = by_place, .check = &check, .counts = counts};
+    scan s = {.runs = runs, .kind = kind, .by_place = by_place, .check = &check};
     s.box = csg_box_empty();
-    memset(counts, 0, HASHES * sizeof *counts);
     csgm_status status = pass(&s, true, count_triangle, NULL);
     bool is_manifold = false;
     if (!status && !by_place && s.triangles && !s.unsound)
@@ -502,6 +522,10 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
         return status;
     }
     csg_mesh_measures measures = csg_mesh_measures_begin(s.box);
+    if (!status && !take_counts(&s))
+        status = csg_context_no_memory(runs->context);
+    if (!status)
+        status = pass(&s, false, count_hashes, NULL);
     if (!status && !take_arrays(&s))
         status = csg_context_no_memory(runs->context);
     if (!status)
@@ -522,20 +546,15 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
 /* As csg_mesh_inspect: what is open along creases is looked at by place, too. */
 static csgm_status scan_runs(csg_runs *runs, const csg_runs_kind *kind, csgm_file_figures *out)
 {
-    csg_memory *memory = &runs->context->memory;
-    uint64_t *counts = csg_memory_alloc(memory, HASHES * sizeof *counts);
-    if (!counts)
-        return csg_context_no_memory(runs->context);
-    csgm_status status = scan_once(runs, kind, !runs->names_vertices, counts, out);
+    csgm_status status = scan_once(runs, kind, !runs->names_vertices, out);
     if (!status && runs->names_vertices && out->check.boundary_edges) {
         csgm_file_figures welded = *out;
-        status = scan_once(runs, kind, true, counts, &welded);
+        status = scan_once(runs, kind, true, &welded);
         if (!status && welded.check.boundary_edges < out->check.boundary_edges) {
             welded.check.unused_vertices = out->check.unused_vertices;
             *out = welded;
         }
     }
-    csg_memory_release(memory, counts, HASHES * sizeof *counts);
     return status;
 }
 
