@@ -323,7 +323,8 @@ typedef struct gathering {
     csg_mesh_receiver to;
     uint64_t first, count; /* triangles handed on, and at hand */
     uint64_t owned;        /* vertices of runs before */
-    uint64_t all_triangles, all_vertices;
+    uint64_t all_vertices;
+    uint8_t *is_used; /* vertices from `owned` on */
     uint32_t *vertices;
     float *places;
 } gathering;
@@ -342,14 +343,27 @@ static bool put_nothing(void *user, const csg_mesh_run *run)
     return true;
 }
 
-/* A run has as large a part of the vertices for its own as it is of the triangles: where both stand
- * in one order, as meshes are made, most links are closed in it, and do not come to the seam. */
+/* Behind the vertices that are the run's own: of those that come next in the file, as many as half
+ * of are used. Where vertices and triangles stand in one order, as meshes are made, most links are
+ * closed in a run then, and do not come to the seam. */
+static uint64_t end_of_own(gathering *g)
+{
+    uint64_t left = g->all_vertices - g->owned, most = 3 * g->count, used = 0, end = 0;
+    most = most < left ? most : left;
+    memset(g->is_used, 0, RUN_TRIANGLES * 3);
+    for (uint64_t i = 0; i < 3 * g->count; i++)
+        if (g->vertices[i] - g->owned < most)
+            g->is_used[g->vertices[i] - g->owned] = 1;
+    for (uint64_t i = 0; i < most; i++) {
+        used += g->is_used[i];
+        end = 2 * used > i ? i + 1 : end;
+    }
+    return g->owned + end;
+}
+
 static void hand_on(gathering *g)
 {
-    uint64_t triangles = g->first + g->count;
-    uint64_t end =
-        (uint64_t)((double)triangles / (double)g->all_triangles * (double)g->all_vertices);
-    end = end < g->owned ? g->owned : end > g->all_vertices ? g->all_vertices : end;
+    uint64_t end = end_of_own(g);
     const csg_mesh_run run = {.first_vertex = g->owned,
                               .vertex_count = end - g->owned,
                               .first_triangle = g->first,
@@ -358,7 +372,7 @@ static void hand_on(gathering *g)
                               .joined = g->vertices};
     g->to.put(g->to.user, &run);
     g->owned = end;
-    g->first = triangles;
+    g->first += g->count;
     g->count = 0;
 }
 
@@ -400,17 +414,19 @@ static csgm_status try_manifold(scan *s, bool *is_one)
     const csg_mesh_receiver nobody = {.begin = begin_nothing, .put = put_nothing};
     const size_t vertex_bytes = RUN_TRIANGLES * 3 * sizeof(uint32_t);
     const size_t place_bytes = RUN_TRIANGLES * 9 * sizeof(float);
-    gathering g = {.all_triangles = s->triangles,
-                   .all_vertices = s->runs->vertex_count,
+    gathering g = {.all_vertices = s->runs->vertex_count,
+                   .is_used = csg_memory_alloc(memory, RUN_TRIANGLES * 3),
                    .vertices = csg_memory_alloc(memory, vertex_bytes),
                    .places = csg_memory_alloc(memory, place_bytes)};
     csg_mesh_figures *figures = NULL;
     csgm_status status = CSGM_OK;
     *is_one = false;
-    if (g.vertices && g.places && csg_mesh_figures_make(s->runs->context, &nobody, 1, &figures))
+    if (g.is_used && g.vertices && g.places &&
+        csg_mesh_figures_make(s->runs->context, &nobody, 1, &figures))
         status = look_at_manifold(s, figures, &g, is_one);
     if (figures)
         csg_mesh_figures_destroy(figures);
+    csg_memory_release(memory, g.is_used, RUN_TRIANGLES * 3);
     csg_memory_release(memory, g.vertices, vertex_bytes);
     csg_memory_release(memory, g.places, place_bytes);
     return status;
