@@ -8,6 +8,10 @@
  * range; the ranges are chosen by a count of all hashes, so that the corners of each fit into
  * memory. Sets of triangles that edges join (union-find) are the only thing that is kept of all:
  * four bytes each.
+ *
+ * Closed manifolds, which most files are, take one pass, and in the order that meshes are made in
+ * no memory but that of the border of what has been seen, and a bit for each vertex: they are
+ * looked at as they are while they are made (mesh/figures).
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -23,6 +27,7 @@
 #include "base/trace.h"
 #include "io/format_table.h"
 #include "io/formats.h"
+#include "mesh/figures/figures.h"
 #include "mesh/figures/measures.h"
 #include "mesh/inspect.h"
 
@@ -140,14 +145,21 @@ static csgm_status count_triangle(scan *s, void *user, const csg_runs_triangle *
     bool sound = is_sound(k);
     s->triangles++;
     s->unsound += !sound;
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3 && sound; c++) {
         csg_vec3 p = place(t, c);
-        s->counts[hash_of(&k[c]) >> (64 - HASH_BITS)]++;
-        if (sound)
-            s->box = csg_box_hull(s->box, (csg_box){p, p});
+        s->box = csg_box_hull(s->box, (csg_box){p, p});
     }
     return s->triangles > UINT32_MAX / 3 ? csg_mesh_too_large(s->runs->context, s->triangles)
                                          : CSGM_OK;
+}
+
+static csgm_status count_hashes(scan *s, void *user, const csg_runs_triangle *t, const key k[3])
+{
+    (void)user;
+    (void)t;
+    for (int c = 0; c < 3; c++)
+        s->counts[hash_of(&k[c]) >> (64 - HASH_BITS)]++;
+    return CSGM_OK;
 }
 
 /* ---- the other passes: corners of some of the vertices ----------------------------------- */
@@ -302,7 +314,133 @@ static csgm_status close_vertices(scan *s)
     return CSGM_OK;
 }
 
+/* ---- closed manifolds ------------------------------------------------------------------ */
+
+enum { RUN_TRIANGLES = 1 << 11 };
+
+/* Triangles on their way to the figures, some at a time. */
+typedef struct gathering {
+    csg_mesh_receiver to;
+    uint64_t first, count; /* triangles handed on, and at hand */
+    uint64_t owned;        /* vertices of runs before */
+    uint64_t all_vertices;
+    uint8_t *is_used; /* vertices from `owned` on */
+    uint32_t *vertices;
+    float *places;
+} gathering;
+
+static csgm_status begin_nothing(void *user, const csg_mesh_counts *counts)
+{
+    (void)user;
+    (void)counts;
+    return CSGM_OK;
+}
+
+static bool put_nothing(void *user, const csg_mesh_run *run)
+{
+    (void)user;
+    (void)run;
+    return true;
+}
+
+/* Behind the vertices that are the run's own: of those that come next in the file, as many as half
+ * of are used. Where vertices and triangles stand in one order, as meshes are made, most links are
+ * closed in a run then, and do not come to the seam. */
+static uint64_t end_of_own(gathering *g)
+{
+    uint64_t left = g->all_vertices - g->owned, most = 3 * g->count, used = 0, end = 0;
+    most = most < left ? most : left;
+    memset(g->is_used, 0, RUN_TRIANGLES * 3);
+    for (uint64_t i = 0; i < 3 * g->count; i++)
+        if (g->vertices[i] - g->owned < most)
+            g->is_used[g->vertices[i] - g->owned] = 1;
+    for (uint64_t i = 0; i < most; i++) {
+        used += g->is_used[i];
+        end = 2 * used > i ? i + 1 : end;
+    }
+    return g->owned + end;
+}
+
+static void hand_on(gathering *g)
+{
+    uint64_t end = end_of_own(g);
+    const csg_mesh_run run = {.first_vertex = g->owned,
+                              .vertex_count = end - g->owned,
+                              .first_triangle = g->first,
+                              .triangle_count = g->count,
+                              .corners = g->places,
+                              .joined = g->vertices};
+    g->to.put(g->to.user, &run);
+    g->owned = end;
+    g->first += g->count;
+    g->count = 0;
+}
+
+static csgm_status gather(scan *s, void *user, const csg_runs_triangle *t, const key k[3])
+{
+    gathering *g = user;
+    (void)s;
+    (void)k;
+    for (size_t c = 0; c < 3; c++) {
+        g->vertices[3 * g->count + c] = t->vertex[c];
+        memcpy(g->places + 9 * g->count + 3 * c, t->at[c], sizeof t->at[c]);
+    }
+    if (++g->count == RUN_TRIANGLES)
+        hand_on(g);
+    return CSGM_OK;
+}
+
+static csgm_status look_at_manifold(scan *s, csg_mesh_figures *figures, gathering *g, bool *is_one)
+{
+    const csg_mesh_counts counts = {.vertex_count = s->runs->vertex_count,
+                                    .triangle_count = s->triangles,
+                                    .origin = s->runs->origin,
+                                    .bounds = s->box};
+    g->to = csg_mesh_figures_receiver(figures);
+    csgm_status status = g->to.begin(g->to.user, &counts);
+    if (!status)
+        status = pass(s, true, gather, g);
+    if (!status && g->count)
+        hand_on(g);
+    *is_one = !status && csg_mesh_figures_get(figures, s->check);
+    return status;
+}
+
+/* *is_one: it is a closed manifold, whose figures are in s->check; else, also where there is too
+ * little memory, nothing has changed. */
+static csgm_status try_manifold(scan *s, bool *is_one)
+{
+    csg_memory *memory = &s->runs->context->memory;
+    const csg_mesh_receiver nobody = {.begin = begin_nothing, .put = put_nothing};
+    const size_t vertex_bytes = RUN_TRIANGLES * 3 * sizeof(uint32_t);
+    const size_t place_bytes = RUN_TRIANGLES * 9 * sizeof(float);
+    gathering g = {.all_vertices = s->runs->vertex_count,
+                   .is_used = csg_memory_alloc(memory, RUN_TRIANGLES * 3),
+                   .vertices = csg_memory_alloc(memory, vertex_bytes),
+                   .places = csg_memory_alloc(memory, place_bytes)};
+    csg_mesh_figures *figures = NULL;
+    csgm_status status = CSGM_OK;
+    *is_one = false;
+    if (g.is_used && g.vertices && g.places &&
+        csg_mesh_figures_make(s->runs->context, &nobody, 1, &figures))
+        status = look_at_manifold(s, figures, &g, is_one);
+    if (figures)
+        csg_mesh_figures_destroy(figures);
+    csg_memory_release(memory, g.is_used, RUN_TRIANGLES * 3);
+    csg_memory_release(memory, g.vertices, vertex_bytes);
+    csg_memory_release(memory, g.places, place_bytes);
+    return status;
+}
+
 /* ---- all of it ------------------------------------------------------------------------- */
+
+static bool take_counts(scan *s)
+{
+    s->counts = csg_memory_alloc(&s->runs->context->memory, HASHES * sizeof *s->counts);
+    if (s->counts)
+        memset(s->counts, 0, HASHES * sizeof *s->counts);
+    return s->counts != NULL;
+}
 
 /* Room for the triangles' sets, and for as many corners as the rest allows, up to all. */
 static bool take_arrays(scan *s)
@@ -329,6 +467,7 @@ static bool take_arrays(scan *s)
 static void release_arrays(scan *s)
 {
     csg_memory *memory = &s->runs->context->memory;
+    csg_memory_release(memory, s->counts, HASHES * sizeof *s->counts);
     csg_memory_release(memory, s->parents, (size_t)s->triangles * sizeof *s->parents);
     csg_memory_release(memory, s->corners, (size_t)s->corner_room * sizeof *s->corners);
     csg_memory_release(memory, s->chains, (size_t)s->chain_count * sizeof *s->chains);
@@ -374,16 +513,35 @@ static void count_components(scan *s)
     s->check->components = roots - s->unsound; /* each of those is alone */
 }
 
-/* With vertices by number or by place. The counts array is the caller's. */
+static void fill_in(const scan *s, csgm_file_figures *out)
+{
+    out->vertices = s->runs->names_vertices ? s->runs->vertex_count : s->vertices;
+    out->triangles = s->triangles;
+    out->has_normals = s->runs->has_normals;
+    out->has_colors = s->runs->has_colors;
+    out->check = *s->check;
+}
+
+/* With vertices by number or by place. */
 static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_place,
-                             uint64_t *counts, csgm_file_figures *out)
+                             csgm_file_figures *out)
 {
     csgm_mesh_check check = {0};
-    scan s = {.runs = runs, .kind = kind, .by_place = by_place, .check = &check, .counts = counts};
+    scan s = {.runs = runs, .kind = kind, .by_place = by_place, .check = &check};
     s.box = csg_box_empty();
-    memset(counts, 0, HASHES * sizeof *counts);
     csgm_status status = pass(&s, true, count_triangle, NULL);
+    bool is_manifold = false;
+    if (!status && !by_place && s.triangles && !s.unsound)
+        status = try_manifold(&s, &is_manifold);
+    if (!status && is_manifold) {
+        fill_in(&s, out);
+        return status;
+    }
     csg_mesh_measures measures = csg_mesh_measures_begin(s.box);
+    if (!status && !take_counts(&s))
+        status = csg_context_no_memory(runs->context);
+    if (!status)
+        status = pass(&s, false, count_hashes, NULL);
     if (!status && !take_arrays(&s))
         status = csg_context_no_memory(runs->context);
     if (!status)
@@ -392,14 +550,10 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
         count_components(&s);
         csg_mesh_measures_end(&measures, s.box, runs->origin, &check);
         check.degenerate_triangles = s.unsound;
-        out->vertices = runs->names_vertices ? runs->vertex_count : s.vertices;
-        out->triangles = s.triangles;
-        check.unused_vertices = out->vertices - s.used;
+        check.unused_vertices = (runs->names_vertices ? runs->vertex_count : s.vertices) - s.used;
         check.euler = (int64_t)s.used - (int64_t)s.edges + (int64_t)(s.triangles - s.unsound);
         check.genus = (int64_t)check.components - check.euler / 2;
-        out->has_normals = runs->has_normals;
-        out->has_colors = runs->has_colors;
-        out->check = check;
+        fill_in(&s, out);
     }
     release_arrays(&s);
     return status;
@@ -408,20 +562,15 @@ static csgm_status scan_once(csg_runs *runs, const csg_runs_kind *kind, bool by_
 /* As csg_mesh_inspect: what is open along creases is looked at by place, too. */
 static csgm_status scan_runs(csg_runs *runs, const csg_runs_kind *kind, csgm_file_figures *out)
 {
-    csg_memory *memory = &runs->context->memory;
-    uint64_t *counts = csg_memory_alloc(memory, HASHES * sizeof *counts);
-    if (!counts)
-        return csg_context_no_memory(runs->context);
-    csgm_status status = scan_once(runs, kind, !runs->names_vertices, counts, out);
+    csgm_status status = scan_once(runs, kind, !runs->names_vertices, out);
     if (!status && runs->names_vertices && out->check.boundary_edges) {
         csgm_file_figures welded = *out;
-        status = scan_once(runs, kind, true, counts, &welded);
+        status = scan_once(runs, kind, true, &welded);
         if (!status && welded.check.boundary_edges < out->check.boundary_edges) {
             welded.check.unused_vertices = out->check.unused_vertices;
             *out = welded;
         }
     }
-    csg_memory_release(memory, counts, HASHES * sizeof *counts);
     return status;
 }
 

@@ -2,15 +2,19 @@
 """csgmesh batch on many machines: --shard, and reports that are one again by --merge-reports. Every scene is made by one
 shard exactly, whatever the number of shards; shares are even; what comes or goes moves few others.
 """
+import glob
 import json
 import os
 import random
+import shlex
 import subprocess
 import time
+import unittest
 import xml.etree.ElementTree as xml
 
 import cli
 from batch_support import BatchTest, digest, needs_hashes
+from test_ranks import launcher
 
 SMALL = ["-r", "6"]
 
@@ -151,6 +155,35 @@ class WhichOne(ShardTest):
                           {"ARRAY_TASK_ID": "9", "ARRAY_TASK_MIN": "5", "ARRAY_TASK_COUNT": "4"},
                           {"PROCID": "8", "STEP_NUM_TASKS": "8"}, {"PROCID": "0", "STEP_NUM_TASKS": "1"}):
             self.assert_refused(self.slurm(**variables), 2, "--shard slurm")
+
+    def test_mpi(self):
+        def shard_of(**variables):
+            environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMI_"))}
+            return self.run_in("batch", *self.names, "-d", "out", *SMALL, "--shard", "mpi", env={**environment, **variables})
+        for variables, shard in (({"OMPI_COMM_WORLD_RANK": "2", "OMPI_COMM_WORLD_SIZE": "4"}, "3 of 4"),
+                                 ({"PMI_RANK": "0", "PMI_SIZE": "2"}, "1 of 2")):
+            result = shard_of(**variables)
+            self.assert_status(result, 0)
+            self.assertIn(f"shard {shard} of a batch of 6 jobs\n", result.stdout.decode())
+        for variables in ({}, {"PMI_RANK": "0"}, {"OMPI_COMM_WORLD_SIZE": "4"}, {"PMI_RANK": "2", "PMI_SIZE": "2"},
+                          {"OMPI_COMM_WORLD_RANK": "-1", "OMPI_COMM_WORLD_SIZE": "4"},
+                          {"OMPI_COMM_WORLD_RANK": "0", "OMPI_COMM_WORLD_SIZE": "99999999"}):
+            self.assert_refused(shard_of(**variables), 2, "--shard mpi")
+
+    @unittest.skipUnless(launcher(), "there is no mpirun")
+    def test_mpirun(self):
+        """Three processes make each scene once, and their reports are one."""
+        batch = shlex.join([cli.PROGRAM, "batch", *self.names, "-d", "out", *SMALL, "--shard", "mpi", "--json"])
+        command = [*launcher(), "-n", "3", "sh", "-c", f"{batch} > $$.json"]
+        allowed = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        result = subprocess.run(command, cwd=self.folder, env=allowed, capture_output=True, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        reports = glob.glob(self.path("*.json"))
+        result = self.run_in("batch", "--merge-reports", *reports)
+        self.assert_status(result, 0)
+        lines = [json.loads(line) for line in result.stdout.decode().splitlines()]
+        self.assertEqual([line["outcome"] for line in lines[:-1]], 6 * ["made"])
+        self.assertEqual((lines[-1]["merged"], lines[-1]["shards"], lines[-1]["made"]), (3, 3, 6))
 
     def test_the_report_says_it(self):
         outcomes = self.batch(*self.names, "-d", "out", *SMALL, "--shard", "2/3", "--junit", "r.xml")

@@ -144,9 +144,9 @@ class Tolerance(cli.CliTest):
     @cli.optimised_only
     def test_too_little_memory_is_told(self):
         """Tiles that cannot be held all together: how much is needed at least, before the limit is met."""
-        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
-        result = self.run_in("lattice.txt", "-e", "0.05", "-j", "1", "--max-memory", "6M", "-o", "a.ply")
-        self.assert_refused(result, 2, "E0901", "at least 7 MiB of memory are needed", "--quality draft", "-r")
+        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 5, thickness = 0.6); }")
+        result = self.run_in("lattice.txt", "-e", "0.05", "-j", "1", "--max-memory", "8M", "-o", "a.ply")
+        self.assert_refused(result, 2, "E0901", "at least 9 MiB of memory are needed", "--quality draft", "-r")
         self.assert_files("lattice.txt")
 
     def test_too_little_memory(self):

@@ -261,12 +261,120 @@ static void too_narrow(void **state)
     io_context_check(&io);
 }
 
+/* The sets of its triangles alone would take more than there is: a closed manifold needs none. */
+static void large_manifold(void **state)
+{
+    (void)state;
+    io_context io;
+    char folder[200], path[300];
+    csgm_file_figures found;
+    io_context_init(&io, 0);
+    io_folder_make(folder, sizeof folder);
+    csgm_mesh *mesh = io_sphere_make(&io.context, 800, 400);
+    assert_true(mesh->triangle_count * sizeof(uint32_t) > NARROW);
+    snprintf(path, sizeof path, "%s/a.ply", folder);
+    write_as(mesh, &io.context, path);
+    assert_int_equal(inspect_both(path, &found), CSGM_OK);
+    assert_int_equal(found.check.euler, 2);
+    csg_mesh_destroy(mesh);
+    io_folder_remove(folder);
+    io_context_check(&io);
+}
+
+/* Vertices in the order in which triangles have them, as where meshes are made. */
+static void put_in_order(csgm_mesh *mesh)
+{
+    uint64_t count = mesh->vertex_count;
+    uint32_t *number = malloc(count * sizeof *number), next = 0;
+    float *positions = malloc(3 * count * sizeof *positions);
+    assert_true(number && positions);
+    memset(number, 0xFF, count * sizeof *number);
+    memcpy(positions, mesh->positions, 3 * count * sizeof *positions);
+    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
+        uint32_t v = mesh->indices[i];
+        if (number[v] == UINT32_MAX) {
+            number[v] = next++;
+            memcpy(mesh->positions + 3 * (size_t)number[v], positions + 3 * (size_t)v,
+                   3 * sizeof *positions);
+        }
+        mesh->indices[i] = number[v];
+    }
+    free(number);
+    free(positions);
+}
+
+/* Two spheres, one behind the other, and a vertex of the one that the other has in the place of one
+ * of its own; NONE: all stay. */
+static csgm_mesh *make_pair(csgm_context *context, uint32_t from, uint32_t to)
+{
+    csgm_mesh *one = io_sphere_make(context, 160, 126), *pair;
+    put_in_order(one);
+    uint32_t vertices = (uint32_t)one->vertex_count;
+    assert_int_equal(csg_mesh_create(context, 2 * one->vertex_count, 2 * one->triangle_count, false,
+                                     false, &pair),
+                     CSGM_OK);
+    for (uint32_t v = 0; v < 2 * vertices; v++) {
+        memcpy(pair->positions + 3 * (size_t)v, one->positions + 3 * (size_t)(v % vertices),
+               3 * sizeof(float));
+        pair->positions[3 * (size_t)v] += v < vertices ? 0 : 100;
+    }
+    for (size_t i = 0; i < 6 * one->triangle_count; i++) {
+        size_t half = 3 * one->triangle_count;
+        uint32_t v = one->indices[i % half] + (i < half ? 0 : vertices);
+        pair->indices[i] = v == from ? to : v;
+    }
+    csg_mesh_destroy(one);
+    return pair;
+}
+
+/* In the order of a pack of cards. */
+static void shuffle(csgm_mesh *mesh)
+{
+    csg_random random = {11};
+    for (uint64_t t = mesh->triangle_count - 1; t > 0; t--) {
+        uint32_t kept[3], *a = mesh->indices + 3 * t;
+        uint32_t *b = mesh->indices + 3 * (csg_random_next(&random) % (t + 1));
+        memcpy(kept, a, sizeof kept);
+        memcpy(a, b, sizeof kept);
+        memcpy(b, kept, sizeof kept);
+    }
+}
+
+/* Two fans at one vertex, each closed in a run of its own, before the run that the vertex counts to
+ * or behind it; and triangles in no order at all. */
+static void fans_far_apart(void **state)
+{
+    (void)state;
+    enum { FIRST = 500, SECOND = 30000 };
+    static const uint32_t pairs[][2] = {{UINT32_MAX, 0}, {FIRST, SECOND}, {SECOND, FIRST}};
+    io_context io;
+    char folder[200], path[300];
+    csgm_file_figures found;
+    io_context_init(&io, 0);
+    io_folder_make(folder, sizeof folder);
+    snprintf(path, sizeof path, "%s/a.ply", folder);
+    for (int i = 0; i < 6; i++) {
+        csgm_mesh *mesh = make_pair(&io.context, pairs[i % 3][0], pairs[i % 3][1]);
+        if (i >= 3)
+            shuffle(mesh);
+        write_as(mesh, &io.context, path);
+        assert_int_equal(inspect_both(path, &found), CSGM_OK);
+        assert_int_equal(found.check.components, 2);
+        assert_int_equal(found.check.nonmanifold_vertices, i % 3 > 0);
+        assert_int_equal(found.check.unused_vertices, i % 3 > 0);
+        csg_mesh_destroy(mesh);
+    }
+    io_folder_remove(folder);
+    io_context_check(&io);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_figures), cmocka_unit_test(other_headers),
-        cmocka_unit_test(same_words),   cmocka_unit_test(changed_bytes),
-        cmocka_unit_test(too_narrow),
+        cmocka_unit_test(same_figures),   cmocka_unit_test(other_headers),
+        cmocka_unit_test(same_words),     cmocka_unit_test(changed_bytes),
+        cmocka_unit_test(too_narrow),     cmocka_unit_test(large_manifold),
+        cmocka_unit_test(fans_far_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -534,6 +534,14 @@ static bool balance(csg_bricks *b, list *unbalanced, size_t *seen)
     return true;
 }
 
+/* The last round's are the most, and as much as all bricks take: whoever goes on has use for it. */
+static void forget_made(worker *w, csg_memory *memory)
+{
+    csg_memory_release(memory, w->made, w->capacity * sizeof *w->made);
+    w->made = NULL;
+    w->capacity = 0;
+}
+
 csgm_status csg_bricks_refine(csg_bricks *b)
 {
     CSG_ZONE(b->context, "refinement");
@@ -568,6 +576,7 @@ csgm_status csg_bricks_refine(csg_bricks *b)
         b->stats.point_evaluations += part->point_evaluations;
         b->stats.primitive_evaluations += part->primitive_evaluations;
         b->workers[i].stats = (csg_bricks_stats){0};
+        forget_made(&b->workers[i], &b->context->memory);
     }
     return status;
 }
@@ -629,7 +638,7 @@ void csg_bricks_destroy(csg_bricks *b)
             continue;
         csg_pruner_release(&w->pruner);
         csg_arena_reset(&w->tapes);
-        csg_memory_release(memory, w->made, w->capacity * sizeof *w->made);
+        forget_made(w, memory);
         csg_memory_release(memory, w->samples, sizeof *w->samples);
         csg_memory_release(memory, w->scratch,
                            csg_kernel_scratch_floats(b->field->depth) * sizeof(float));

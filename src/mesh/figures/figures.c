@@ -155,7 +155,10 @@ static void close_links(csg_mesh_figures *f, worker *w, const csg_mesh_run *run)
         else if (count || run->joined == run->indices)
             w->open[w->open_count++] = (uint32_t)v;
         if (at % WORD_BITS == WORD_BITS - 1 || v + 1 == w->own_count) {
-            atomic_fetch_or_explicit(&f->closed[at / WORD_BITS], bits, memory_order_relaxed);
+            uint64_t before =
+                atomic_fetch_or_explicit(&f->closed[at / WORD_BITS], bits, memory_order_relaxed);
+            if (before & bits) /* another fan of it was closed on the seam */
+                atomic_store(&f->is_irregular, true);
             bits = 0;
         }
     }
@@ -276,7 +279,7 @@ static void meet_vertex(csg_mesh_figures *f, worker *w, const csg_mesh_run *run,
     uint32_t vertex = global_of(w, run, local);
     bool is_own = local < w->own_count;
     const float *at = is_own && run->positions ? run->positions + 3 * (size_t)local : NULL;
-    if (!is_own && has_bit(f->closed, vertex))
+    if (w->begins[local] != w->begins[local + 1] && has_bit(f->closed, vertex))
         atomic_store(&f->is_irregular, true);
     csg_seam_vertex *met = csg_seam_meet(&f->seam, vertex, w->number[w->pieces[local]], at);
     for (size_t i = w->begins[local]; i < w->begins[local + 1]; i++) {

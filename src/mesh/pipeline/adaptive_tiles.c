@@ -15,9 +15,9 @@ enum { BYTES_PER_BRICK = 4096, LEAST_BRICKS = 256 };
 /* Of the limit: what all of it may take, and what a tile may. */
 enum { WHOLE_SHARE = 2, TILE_SHARE = 16 };
 
-/* What a vertex that is left takes when all tiles are there, with its two triangles, at least:
- * places, neighbours, quadrics, tree and cubes. */
-enum { LEAST_BYTES_PER_VERTEX = 256 };
+/* What a vertex that is left takes when all tiles are there, with its two triangles, at least, and
+ * more than before: places, neighbours and quadrics. */
+enum { LEAST_BYTES_PER_VERTEX = 128 };
 
 size_t csg_mesh_tile_bricks(const csg_bricks *b, const csg_mesh_goal *goal, uint64_t limit_bytes)
 {
@@ -96,7 +96,8 @@ static csgm_status check_room(const csg_extraction *x, const csg_joined *joined,
 {
     const csg_memory *memory = &x->context->memory;
     const csg_begun_samples *s = &joined->samples;
-    uint64_t spare = s->vertex_capacity - s->vertex_count + s->other_capacity - s->other_count;
+    uint64_t spare = s->vertex_capacity - s->vertex_count + s->block_count * CSG_SAMPLES_OF_BLOCK -
+                     s->other_count;
     uint64_t needed = atomic_load(&memory->used_bytes) - spare * sizeof(csg_surface_sample) +
                       cells / 8 * 6 * sizeof(csg_surface_sample);
     uint64_t found = csg_arena_bytes(&x->judge->kept); /* is forgotten before what is left begins */

@@ -93,19 +93,23 @@ static csg_vertex_kind kind_of(const csg_remesh *r, uint32_t vertex, const uint8
 }
 
 /* Edges at which normals turn, by the corners that face them; and the triangles at these. */
-static void find_turns(const csg_remesh *r, const csg_vec3 *normals, uint8_t *creased,
-                       uint8_t *turns)
+static void find_turns(const csg_remesh *r, uint8_t *creased, uint8_t *turns)
 {
     const csg_corners *m = &r->corners;
     memset(turns, 0, m->triangle_count);
     memset(creased, 0, 3 * (size_t)m->triangle_count);
-    for (uint32_t c = 0; c < 3 * m->triangle_count; c++) {
-        uint32_t other = m->across[c];
-        if (!csg_corners_is_live(m, c / 3) || c / 3 < r->closing || other / 3 < r->closing ||
-            !(csg_vec3_dot(normals[c / 3], normals[other / 3]) < CSG_CREASE_COS))
+    for (uint32_t t = r->closing; t < m->triangle_count; t++) {
+        if (!csg_corners_is_live(m, t))
             continue;
-        creased[c] = 1;
-        turns[c / 3] = turns[other / 3] = 1;
+        csg_vec3 normal = normal_of(r, t);
+        for (uint32_t c = 3 * t; c < 3 * t + 3; c++) {
+            uint32_t other = m->across[c]; /* each edge once, by its lower corner */
+            if (other < c || other / 3 < r->closing ||
+                !(csg_vec3_dot(normal, normal_of(r, other / 3)) < CSG_CREASE_COS))
+                continue;
+            creased[c] = creased[other] = 1;
+            turns[t] = turns[other / 3] = 1;
+        }
     }
 }
 
@@ -129,10 +133,10 @@ static void take_back_bent(csg_remesh *r, uint8_t *creased, uint8_t *turns, floa
     take_back_beside(r, creased, turns);
 }
 
-/* Per triangle, but for `creased`, which is per corner. */
+/* Per triangle, but for `creased`, which is per corner. Normals are not kept: they would take six
+ * times as much as all of this. */
 typedef struct crease_room {
-    float *value;
-    csg_vec3 *normals;
+    float *value; /* NULL: cells are not equal */
     uint8_t *turns, *creased;
 } crease_room;
 
@@ -171,7 +175,7 @@ static double angle(csg_vec3 a, csg_vec3 b)
 
 /* Takes those edges back on both sides of which the field's gradients differ by much less than the
  * triangles do: there the surface is curved. False: stopped. */
-static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *creased)
+static bool take_back_curved(csg_remesh *r, uint8_t *creased)
 {
     static const double MOST_OF_TURN = 0.6;
     const csg_corners *m = &r->corners;
@@ -189,7 +193,7 @@ static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
             return false;
         csg_probe_gradients(&r->probe, (const float(*)[3])at, 2 * n, g);
         for (uint32_t i = 0; i < n; i++) {
-            double turn = angle(normals[of[i] / 3], normals[m->across[of[i]] / 3]);
+            double turn = angle(normal_of(r, of[i] / 3), normal_of(r, m->across[of[i]] / 3));
             double own = angle(csg_vec3_from_floats(g[2 * i]), csg_vec3_from_floats(g[2 * i + 1]));
             creased[of[i]] = creased[m->across[of[i]]] = own >= MOST_OF_TURN * turn;
         }
@@ -198,23 +202,15 @@ static bool take_back_curved(csg_remesh *r, const csg_vec3 *normals, uint8_t *cr
     return true;
 }
 
-static void find_all_turns(const csg_remesh *r, const crease_room *room)
-{
-    for (uint32_t t = 0; t < r->corners.triangle_count; t++)
-        room->normals[t] =
-            csg_corners_is_live(&r->corners, t) ? normal_of(r, t) : csg_vec3_make(0, 0, 0);
-    find_turns(r, room->normals, room->creased, room->turns);
-}
-
 static bool find_kinds(csg_remesh *r, const crease_room *room)
 {
     uint32_t creases;
-    find_all_turns(r, room);
+    find_turns(r, room->creased, room->turns);
     if (r->is_own)
         take_back_low(r, room);
     else
         take_back_bent(r, room->creased, room->turns, room->value);
-    if (r->marching->bricks && !take_back_curved(r, room->normals, room->creased))
+    if (r->marching->bricks && !take_back_curved(r, room->creased))
         return false;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++)
         r->kind[v] = r->corners.corner[v] == CSG_CORNER_NONE
@@ -227,17 +223,17 @@ static bool find_kinds(csg_remesh *r, const crease_room *room)
 static bool with_room(csg_remesh *r, bool (*find)(csg_remesh *r, const crease_room *room))
 {
     size_t count = r->corners.triangle_count;
-    crease_room room = {.value = csg_memory_alloc(r->memory, count * sizeof *room.value),
-                        .normals = csg_memory_alloc(r->memory, count * sizeof *room.normals),
+    bool equal = !r->marching->bricks;
+    crease_room room = {.value =
+                            equal ? csg_memory_alloc(r->memory, count * sizeof *room.value) : NULL,
                         .turns = csg_memory_alloc(r->memory, count),
                         .creased = csg_memory_alloc(r->memory, 3 * count)};
-    bool done = room.value && room.normals && room.turns && room.creased;
+    bool done = (room.value || !equal) && room.turns && room.creased;
     if (!done)
         csg_mesh_stop_without_memory(r->watch);
     else
         done = find(r, &room);
     csg_memory_release(r->memory, room.value, count * sizeof *room.value);
-    csg_memory_release(r->memory, room.normals, count * sizeof *room.normals);
     csg_memory_release(r->memory, room.turns, count);
     csg_memory_release(r->memory, room.creased, 3 * count);
     return done;
@@ -272,9 +268,9 @@ static bool is_plane_around(const csg_remesh *r, uint32_t vertex)
 /* A corner on a straight crease is none, and nothing is where all around is plane. */
 static bool find_less(csg_remesh *r, const crease_room *room)
 {
-    find_all_turns(r, room);
+    find_turns(r, room->creased, room->turns);
     take_back_low(r, room);
-    if (r->marching->bricks && !take_back_curved(r, room->normals, room->creased))
+    if (r->marching->bricks && !take_back_curved(r, room->creased))
         return false;
     for (uint32_t v = 0; v < r->corners.vertex_count; v++) {
         uint32_t creases;
@@ -307,6 +303,17 @@ bool csg_remesh_is_crease(const csg_remesh *r, uint32_t corner)
 
 /* ---- beginning ---------------------------------------------------------------------------------
  */
+
+/* Nobody asks what the mesh was made of where it did not begin with the triangles of polyhedra:
+ * counts and which colours there are stay. */
+static void forget_arrays(csg_remesh *r)
+{
+    csgm_mesh *mesh = r->mesh;
+    csg_memory_release(r->memory, mesh->positions, mesh->vertex_count * 3 * sizeof(float));
+    csg_memory_release(r->memory, mesh->indices, mesh->triangle_count * 3 * sizeof(uint32_t));
+    mesh->positions = NULL;
+    mesh->indices = NULL;
+}
 
 csg_vec3 csg_remesh_first_place(const csg_remesh *r, uint32_t vertex)
 {
@@ -374,6 +381,8 @@ csgm_status csg_remesh_begin(csg_remesh *r, csgm_mesh *mesh, const csg_remesh_or
                 csg_mesh_stop_without_memory(watch);
     if (done) {
         copy_vertices(r);
+        if (!r->is_own)
+            forget_arrays(r);
         if (origin->kinds)
             memcpy(r->kind, origin->kinds, r->corners.vertex_count);
         done = (origin->kinds || with_room(r, find_kinds)) &&

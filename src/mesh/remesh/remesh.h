@@ -52,10 +52,10 @@ typedef struct csg_remesh_origin {
     const uint8_t *kinds; /* per vertex, as they were found before; NULL: they are to be found */
 } csg_remesh_origin;
 
-/* Of a mesh, whose creases are found by angle: where triangles that lie on the surface meet at 20
- * degrees or more, and, where cells follow the shape, the field turns there and not beside it.
- * marching: as it was made, with its blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL:
- * not a closed manifold. */
+/* Of a mesh, which loses its vertices and triangles unless it is own, and whose creases are found
+ * by angle: where triangles that lie on the surface meet at 20 degrees or more, and, where cells
+ * follow the shape, the field turns there and not beside it. marching: as it was made, with its
+ * blocks at hand. CSGM_OK, CSGM_ERR_MEMORY or CSGM_ERR_INTERNAL: not a closed manifold. */
 csgm_status csg_remesh_begin(csg_remesh *remesh, csgm_mesh *mesh, const csg_remesh_origin *origin,
                              const csg_marching *marching, csg_mesh_watch *watch);
 void csg_remesh_end(csg_remesh *remesh);

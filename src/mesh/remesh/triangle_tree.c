@@ -144,13 +144,20 @@ bool csg_triangle_tree_make_of(csg_triangle_tree *t, const csg_triangle_tree *wh
     return fill(t);
 }
 
+void csg_triangle_tree_forget(csg_triangle_tree *t)
+{
+    csg_memory *memory = t->corners->memory;
+    csg_memory_release(memory, t->nodes, t->node_capacity * sizeof *t->nodes);
+    csg_memory_release(memory, t->facing, t->facing_capacity * sizeof *t->facing);
+    t->nodes = NULL;
+    t->facing = NULL;
+    t->node_capacity = t->facing_capacity = 0;
+}
+
 void csg_triangle_tree_release(csg_triangle_tree *t)
 {
-    if (t->corners) {
-        csg_memory *memory = t->corners->memory;
-        csg_memory_release(memory, t->nodes, t->node_capacity * sizeof *t->nodes);
-        csg_memory_release(memory, t->facing, t->facing_capacity * sizeof *t->facing);
-    }
+    if (t->corners)
+        csg_triangle_tree_forget(t);
     *t = (csg_triangle_tree){0};
 }
 

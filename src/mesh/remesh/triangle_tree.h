@@ -49,6 +49,10 @@ bool csg_triangle_tree_make_of(csg_triangle_tree *tree, const csg_triangle_tree 
                                const uint32_t *slots);
 void csg_triangle_tree_release(csg_triangle_tree *tree);
 
+/* Keeps nothing but where places and corners are, and the noise: nothing is found until it is made
+ * again. */
+void csg_triangle_tree_forget(csg_triangle_tree *tree);
+
 /* After a triangle has changed, or is gone. */
 void csg_triangle_tree_update(csg_triangle_tree *tree, uint32_t triangle);
 void csg_triangle_tree_update_around(csg_triangle_tree *tree, uint32_t vertex);

@@ -220,14 +220,12 @@ static bool look_at_mesh(csg_decimation *d)
     if (!normals)
         return false;
     find_normals(r, normals);
-    if (d->begun)
-        csg_decimation_take_samples(d);
-    else
+    if (!d->begun)
         csg_decimation_make_samples(d, normals);
     find_tangents(r, normals);
     make_quadrics(d, normals);
     csg_memory_release(r->memory, normals, count * sizeof *normals);
-    return true;
+    return !d->begun || csg_decimation_take_samples(d);
 }
 
 /* ---- beginning and ending ----------------------------------------------------------------------
@@ -258,8 +256,8 @@ static bool take_arrays(csg_decimation *d)
     d->quadrics = csg_memory_alloc(memory, vertices * sizeof *d->quadrics);
     d->version = csg_memory_alloc(memory, vertices * sizeof *d->version);
     d->state = csg_memory_alloc(memory, vertices);
-    size_t samples = (d->begun ? 0 : vertices + triangles) + (d->missed ? d->missed->count : 0) + 1;
-    bool done = csg_decimation_hold_samples(d, samples);
+    size_t samples = vertices + triangles + (d->missed ? d->missed->count : 0) + 1;
+    bool done = csg_decimation_hold_samples(d, d->begun ? d->begun->vertex_count + 1 : samples);
     d->first_sample = csg_memory_alloc(memory, triangles * sizeof *d->first_sample);
     d->queue = csg_memory_alloc(memory, sizeof *d->queue);
     d->room = csg_memory_alloc(memory, sizeof *d->room);

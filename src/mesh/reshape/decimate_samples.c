@@ -23,8 +23,7 @@ static void add_sample(csg_decimation *d, const float at[3], csg_vec3 normal, ui
     memcpy(d->samples[s].at, at, sizeof d->samples[s].at);
     for (int axis = 0; axis < 3; axis++)
         d->samples[s].normal[axis] = (int16_t)lrint(INT16_MAX * parts[axis]);
-    d->samples[s].next = d->first_sample[triangle];
-    d->first_sample[triangle] = s;
+    csg_sample_put(d, s, triangle);
 }
 
 /* Zero where it leads over a crease. */
@@ -152,50 +151,105 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
     add_missed(d);
 }
 
+bool csg_begun_samples_add_other(csg_begun_samples *s, csg_memory *memory,
+                                 const csg_surface_sample *sample)
+{
+    size_t place = s->other_count % CSG_SAMPLES_OF_BLOCK;
+    if (!place) {
+        csg_sample_block *block = csg_memory_alloc(memory, sizeof *block);
+        if (!block)
+            return false;
+        block->next = NULL;
+        *(s->last ? &s->last->next : &s->others) = block;
+        s->last = block;
+        s->block_count++;
+    }
+    s->last->items[place] = *sample;
+    s->other_count++;
+    return true;
+}
+
+/* How many of the others the first block has. */
+static size_t count_of_first(const csg_begun_samples *s)
+{
+    return s->other_count < CSG_SAMPLES_OF_BLOCK ? s->other_count : CSG_SAMPLES_OF_BLOCK;
+}
+
+static void drop_first(csg_begun_samples *s, csg_memory *memory)
+{
+    csg_sample_block *block = s->others;
+    s->other_count -= count_of_first(s);
+    s->others = block->next;
+    s->last = s->others ? s->last : NULL;
+    s->block_count--;
+    csg_memory_release(memory, block, sizeof *block);
+}
+
 void csg_begun_samples_release(csg_begun_samples *s, csg_memory *memory)
 {
     csg_memory_release(memory, s->of_vertices, s->vertex_capacity * sizeof *s->of_vertices);
-    csg_memory_release(memory, s->others, s->other_capacity * sizeof *s->others);
-    s->of_vertices = s->others = NULL;
-    s->vertex_count = s->vertex_capacity = s->other_count = s->other_capacity = 0;
+    while (s->others)
+        drop_first(s, memory);
+    s->of_vertices = NULL;
+    s->vertex_count = s->vertex_capacity = 0;
 }
 
 bool csg_decimation_hold_samples(csg_decimation *d, size_t needed)
 {
     csg_begun_samples *begun = d->begun;
-    if (!begun)
-        return csg_memory_reserve(d->remesh->memory, (void **)&d->samples, &d->sample_capacity,
-                                  needed, sizeof *d->samples);
-    needed += begun->vertex_count + begun->other_count;
-    if (!csg_memory_reserve(d->remesh->memory, (void **)&begun->of_vertices,
-                            &begun->vertex_capacity, needed, sizeof *d->samples))
-        return false;
-    d->samples = begun->of_vertices;
-    d->sample_capacity = begun->vertex_capacity;
-    begun->of_vertices = NULL;
-    begun->vertex_capacity = 0;
-    return true;
+    if (begun && !d->samples) {
+        d->samples = begun->of_vertices;
+        d->sample_capacity = begun->vertex_capacity;
+        begun->of_vertices = NULL;
+        begun->vertex_capacity = 0;
+    }
+    return csg_memory_reserve(d->remesh->memory, (void **)&d->samples, &d->sample_capacity, needed,
+                              sizeof *d->samples);
+}
+
+/* Room for so many more of the samples that there are to be. Arrays grow by an eighth at least;
+ * what would be too much at last would never be given back, so the last step is one that it fits.
+ */
+static bool hold_more(csg_decimation *d, size_t more, size_t all)
+{
+    size_t needed = d->sample_count + more, next = d->sample_capacity + d->sample_capacity / 8 + 1;
+    if (needed <= d->sample_capacity)
+        return true;
+    if (next + next / 8 + 1 > all)
+        needed = all;
+    return csg_decimation_hold_samples(d, needed);
 }
 
 /* The samples may be the next ones of d->samples themselves. */
 static void take(csg_decimation *d, const csg_surface_sample *samples, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        uint32_t s = d->sample_count++, triangle = samples[i].next;
+        uint32_t s = d->sample_count++;
         d->samples[s] = samples[i];
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        csg_sample_put(d, s, csg_surface_sample_next(&samples[i]));
     }
 }
 
-void csg_decimation_take_samples(csg_decimation *d)
+bool csg_decimation_take_samples(csg_decimation *d)
 {
+    csg_begun_samples *begun = d->begun;
     memset(d->first_sample, 0xFF, d->remesh->corners.triangle_count * sizeof *d->first_sample);
-    take(d, d->samples, d->begun->vertex_count);
+    size_t missed = d->missed ? d->missed->count : 0;
+    size_t all = begun->vertex_count + begun->other_count + missed;
+    take(d, d->samples, begun->vertex_count);
     d->vertex_samples = d->sample_count;
-    take(d, d->begun->others, d->begun->other_count);
-    csg_begun_samples_release(d->begun, d->remesh->memory);
+    while (begun->others) {
+        size_t count = count_of_first(begun);
+        if (!hold_more(d, count, all))
+            return false;
+        take(d, begun->others->items, count);
+        drop_first(begun, d->remesh->memory);
+    }
+    csg_begun_samples_release(begun, d->remesh->memory);
+    if (!hold_more(d, missed, all))
+        return false;
     add_missed(d);
+    return true;
 }
 
 /* ---- handing over ------------------------------------------------------------------------------
@@ -352,7 +406,7 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
 {
     csg_collapse_room *room = d->room;
     uint32_t before = CSG_CORNER_NONE, s = d->first_sample[triangle];
-    for (; s != CSG_CORNER_NONE; before = s, s = d->samples[s].next) {
+    for (; s != CSG_CORNER_NONE; before = s, s = csg_sample_next(d, s)) {
         uint32_t owner = choose_owner(d, s, kept);
         if (owner == CSG_CORNER_NONE)
             break;
@@ -363,9 +417,8 @@ static bool find_owners(csg_decimation *d, uint32_t triangle, uint32_t kept)
         room->owner[room->owner_count++] = owner;
     }
     if (s != CSG_CORNER_NONE && before != CSG_CORNER_NONE) {
-        d->samples[before].next = d->samples[s].next;
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        csg_surface_sample_set_next(&d->samples[before], csg_sample_next(d, s));
+        csg_sample_put(d, s, triangle);
     }
     return s == CSG_CORNER_NONE;
 }
@@ -442,25 +495,28 @@ void csg_decimation_find_seen(csg_decimation *d)
     memset(room->seen, 0, room->count * sizeof *room->seen);
     for (uint32_t i = 0; i < room->count + room->gone; i++)
         for (uint32_t s = d->first_sample[room->triangle[i]]; s != CSG_CORNER_NONE;
-             s = d->samples[s].next)
+             s = csg_sample_next(d, s))
             see(d, s, room->owner[n++]);
 }
 
 void csg_decimation_hand_over(csg_decimation *d)
 {
     csg_collapse_room *room = d->room;
-    uint32_t chain = CSG_CORNER_NONE, *end = &chain;
+    uint32_t chain = CSG_CORNER_NONE, last = CSG_CORNER_NONE;
     for (uint32_t i = 0; i < room->count + room->gone; i++) {
-        *end = d->first_sample[room->triangle[i]];
+        uint32_t s = d->first_sample[room->triangle[i]];
         d->first_sample[room->triangle[i]] = CSG_CORNER_NONE;
-        while (*end != CSG_CORNER_NONE)
-            end = &d->samples[*end].next;
+        if (last == CSG_CORNER_NONE)
+            chain = s;
+        else
+            csg_surface_sample_set_next(&d->samples[last], s);
+        for (; s != CSG_CORNER_NONE; s = csg_sample_next(d, s))
+            last = s;
     }
     for (size_t i = 0; chain != CSG_CORNER_NONE; i++) {
-        uint32_t s = chain, triangle = room->triangle[room->owner[i]];
-        chain = d->samples[s].next;
-        d->samples[s].next = d->first_sample[triangle];
-        d->first_sample[triangle] = s;
+        uint32_t s = chain;
+        chain = csg_sample_next(d, s);
+        csg_sample_put(d, s, room->triangle[room->owner[i]]);
     }
 }
 
@@ -481,7 +537,7 @@ bool csg_decimation_measure(const csg_decimation *d, double error, csg_far_place
             continue;
         const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
                                csg_remesh_corner(r, 3 * t + 2)};
-        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = d->samples[s].next) {
+        for (uint32_t s = d->first_sample[t]; s != CSG_CORNER_NONE; s = csg_sample_next(d, s)) {
             csg_vec3 p = csg_sample_at(d, s);
             double distance = distance_of(d, p, v, *most);
             if (!(distance > error))

@@ -5,6 +5,8 @@
 #ifndef CSG_MESH_RESHAPE_DECIMATION_H
 #define CSG_MESH_RESHAPE_DECIMATION_H
 
+#include <string.h>
+
 #include "mesh/distance/missed.h"
 #include "mesh/reshape/quadric.h"
 
@@ -33,20 +35,48 @@ typedef struct csg_facets {
     float square[CSG_RING_MOST], over[CSG_RING_MOST], weight[2][CSG_RING_MOST];
 } csg_facets;
 
+/* There are more of them than of anything else: so places and links are kept as bytes, since the
+ * alignment of their types would add two of these to each. */
 typedef struct csg_surface_sample {
-    float at[3];
-    uint32_t next;     /* in its triangle's list */
+    uint8_t at[3 * sizeof(float)];
+    uint8_t next[sizeof(uint32_t)]; /* in its triangle's list */
     int16_t normal[3]; /* outward, in INT16_MAXths; zero at creases, and where it is not known */
 } csg_surface_sample;
 
+static inline uint32_t csg_surface_sample_next(const csg_surface_sample *sample)
+{
+    uint32_t next;
+    memcpy(&next, sample->next, sizeof next);
+    return next;
+}
+
+static inline void csg_surface_sample_set_next(csg_surface_sample *sample, uint32_t next)
+{
+    memcpy(sample->next, &next, sizeof next);
+}
+
+enum { CSG_SAMPLES_OF_BLOCK = 8192 };
+
+/* All blocks but the last one are full. */
+typedef struct csg_sample_block {
+    struct csg_sample_block *next;
+    csg_surface_sample items[CSG_SAMPLES_OF_BLOCK];
+} csg_sample_block;
+
 /* Samples of a mesh that was thinned out in parts before it was joined: `next` is the triangle that
- * answers for one. looks: of those that were vertices; NULL as remesh->looks. */
+ * answers for one. looks: of those that were vertices; NULL as remesh->looks. The others are in
+ * blocks, which are given back one by one while they are put behind those of vertices: there may be
+ * no room for all of them twice. */
 typedef struct csg_begun_samples {
-    csg_surface_sample *of_vertices, *others;
+    csg_surface_sample *of_vertices;
+    csg_sample_block *others, *last;
     csg_look_at_vertex *looks;
-    size_t vertex_count, vertex_capacity, other_count, other_capacity, look_capacity;
+    size_t vertex_count, vertex_capacity, other_count, block_count, look_capacity;
 } csg_begun_samples;
 
+/* One more of the others. False: out of memory. */
+bool csg_begun_samples_add_other(csg_begun_samples *samples, csg_memory *memory,
+                                 const csg_surface_sample *sample);
 /* All but the looks. */
 void csg_begun_samples_release(csg_begun_samples *samples, csg_memory *memory);
 
@@ -114,13 +144,13 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
     return d->region_of[vertex] == d->region;
 }
 
-/* Room for so many samples, and for those that the mesh has begun with: these stay where they are,
- * since there may be no room for them twice. False: out of memory. */
+/* Room for so many samples; those of vertices that the mesh has begun with come first, and stay
+ * where they are. False: out of memory. */
 bool csg_decimation_hold_samples(csg_decimation *d, size_t needed);
 /* normals: the mean of the triangles at each vertex. */
 void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
-/* Those that the mesh has begun with. */
-void csg_decimation_take_samples(csg_decimation *d);
+/* Those that the mesh has begun with. False: out of memory. */
+bool csg_decimation_take_samples(csg_decimation *d);
 /* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
  * left. items: its triangles, of which some may be of others; NULL: all there are. CSGM_OK,
  * CSGM_ERR_MEMORY or CSGM_CANCELLED; neither is reported. Any thread. */
@@ -147,7 +177,22 @@ uint32_t csg_collapse_try(csg_decimation *d, uint32_t from, uint32_t to);
 
 static inline csg_vec3 csg_sample_at(const csg_decimation *d, uint32_t sample)
 {
-    return csg_vec3_from_floats(d->samples[sample].at);
+    float at[3];
+    memcpy(at, d->samples[sample].at, sizeof at);
+    return csg_vec3_from_floats(at);
+}
+
+/* The next one of its triangle's; NONE ends the list. */
+static inline uint32_t csg_sample_next(const csg_decimation *d, uint32_t sample)
+{
+    return csg_surface_sample_next(&d->samples[sample]);
+}
+
+/* Puts it before those that the triangle answers for. */
+static inline void csg_sample_put(csg_decimation *d, uint32_t sample, uint32_t triangle)
+{
+    csg_surface_sample_set_next(&d->samples[sample], d->first_sample[triangle]);
+    d->first_sample[triangle] = sample;
 }
 
 static inline csg_vec3 csg_sample_normal(const csg_decimation *d, uint32_t sample)

@@ -179,14 +179,9 @@ static bool keep_sample(tile *t, uint32_t sample, uint32_t triangle)
     csg_memory *memory = &t->joined->context->memory;
     csg_begun_samples *s = &t->joined->samples;
     csg_surface_sample kept = d->samples[sample];
-    kept.next = triangle;
-    if (sample >= d->vertex_samples) {
-        if (!csg_memory_reserve(memory, (void **)&s->others, &s->other_capacity, s->other_count + 1,
-                                sizeof kept))
-            return false;
-        s->others[s->other_count++] = kept;
-        return true;
-    }
+    csg_surface_sample_set_next(&kept, triangle);
+    if (sample >= d->vertex_samples)
+        return csg_begun_samples_add_other(s, memory, &kept);
     if (!csg_memory_reserve(memory, (void **)&s->of_vertices, &s->vertex_capacity,
                             s->vertex_count + 1, sizeof kept) ||
         (d->originals && !csg_memory_reserve(memory, (void **)&s->looks, &s->look_capacity,
@@ -212,7 +207,7 @@ static bool add_triangles(tile *t)
         for (uint32_t k = 0; k < 3; k++)
             j->indices[j->index_count++] = t->number[m->vertex[3 * i + k]];
         for (uint32_t s = t->decimation.first_sample[i]; s != CSG_CORNER_NONE;
-             s = t->decimation.samples[s].next)
+             s = csg_sample_next(&t->decimation, s))
             if (!keep_sample(t, s, triangle))
                 return false;
     }

@@ -28,7 +28,7 @@ static bool pack_samples(const csg_decimation *d, uint32_t triangle, csg_records
 {
     bool done = true;
     uint32_t s = d->first_sample[triangle];
-    for (; s != CSG_CORNER_NONE && done; s = d->samples[s].next)
+    for (; s != CSG_CORNER_NONE && done; s = csg_sample_next(d, s))
         done = csg_records_add(d->remesh->memory, to, &s, sizeof s);
     return done;
 }
@@ -47,7 +47,7 @@ static bool pack_triangle(const csg_decimation *d, uint32_t triangle, csg_record
         own.vertex[k] = m->vertex[3 * triangle + k];
         own.across[k] = m->across[3 * triangle + k];
     }
-    for (uint32_t s = d->first_sample[triangle]; s != CSG_CORNER_NONE; s = d->samples[s].next)
+    for (uint32_t s = d->first_sample[triangle]; s != CSG_CORNER_NONE; s = csg_sample_next(d, s))
         own.samples++;
     return csg_records_add(memory, to, &own, sizeof own) && pack_samples(d, triangle, to);
 }
@@ -58,8 +58,8 @@ static void unpack_triangle(csg_decimation *d, uint32_t triangle, csg_record_rea
     csg_corners *m = &d->remesh->corners;
     uint8_t is_left;
     csg_record_read(from, item, &is_left, sizeof is_left);
-    uint32_t *end = &d->first_sample[triangle];
-    *end = CSG_CORNER_NONE;
+    uint32_t last = CSG_CORNER_NONE;
+    d->first_sample[triangle] = CSG_CORNER_NONE;
     if (!is_left) {
         m->vertex[3 * triangle] = CSG_CORNER_NONE;
         return;
@@ -71,9 +71,14 @@ static void unpack_triangle(csg_decimation *d, uint32_t triangle, csg_record_rea
         m->across[3 * triangle + k] = own.across[k];
     }
     for (uint32_t i = 0; i < own.samples; i++) {
-        csg_record_read(from, item, end, sizeof *end);
-        end = &d->samples[*end].next;
-        *end = CSG_CORNER_NONE;
+        uint32_t s;
+        csg_record_read(from, item, &s, sizeof s);
+        csg_surface_sample_set_next(&d->samples[s], CSG_CORNER_NONE);
+        if (i == 0)
+            d->first_sample[triangle] = s;
+        else
+            csg_surface_sample_set_next(&d->samples[last], s);
+        last = s;
     }
 }
 

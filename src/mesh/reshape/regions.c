@@ -40,11 +40,10 @@ typedef struct worker {
 
 typedef struct cutting {
     csg_decimation *d;
-    csg_triangle_box *boxes; /* per triangle */
-    uint32_t *slots;         /* per triangle: where it stands among those of its region */
-    uint32_t *inside;        /* per triangle: the region, NONE: across */
-    uint32_t *region_of;     /* per vertex */
-    uint32_t *items;         /* the triangles of one region after another */
+    uint32_t *slots;     /* per triangle: where it stands among those of its region */
+    uint32_t *inside;    /* per triangle: the region, NONE: across */
+    uint32_t *region_of; /* per vertex */
+    uint32_t *items;     /* the triangles of one region after another */
     size_t item_count, item_capacity;
     region *regions;
     size_t region_count, region_capacity;
@@ -68,18 +67,27 @@ static double margin_of(const csg_remesh *r)
     return 2 * r->tree.noise;
 }
 
-static bool meets(const csg_triangle_box *box, csg_vec3 low, csg_vec3 high)
-{
-    return (double)box->max[0] >= low.x && (double)box->min[0] <= high.x &&
-           (double)box->max[1] >= low.y && (double)box->min[1] <= high.y &&
-           (double)box->max[2] >= low.z && (double)box->min[2] <= high.z;
-}
-
 static bool is_in(const csg_triangle_box *box, csg_vec3 low, csg_vec3 high)
 {
     return (double)box->min[0] > low.x && (double)box->max[0] < high.x &&
            (double)box->min[1] > low.y && (double)box->max[1] < high.y &&
            (double)box->min[2] > low.z && (double)box->max[2] < high.z;
+}
+
+/* It is asked for a few times, and would take as much as a triangle's corners if it were kept. */
+static csg_triangle_box box_of(const cutting *c, uint32_t triangle)
+{
+    csg_vec3 v[3];
+    csg_triangle_tree_corners(&c->d->remesh->tree, triangle, v);
+    return csg_triangle_box_of(v);
+}
+
+static bool meets(const cutting *c, uint32_t triangle, csg_vec3 low, csg_vec3 high)
+{
+    csg_triangle_box box = box_of(c, triangle);
+    return (double)box.max[0] >= low.x && (double)box.min[0] <= high.x &&
+           (double)box.max[1] >= low.y && (double)box.min[1] <= high.y &&
+           (double)box.max[2] >= low.z && (double)box.min[2] <= high.z;
 }
 
 static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, csg_vec3 high)
@@ -98,7 +106,8 @@ static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3
         c->item_count, count, csg_vec3_add(box.min, by), csg_vec3_sub(box.max, by), 0, 0, 0};
     memcpy(c->items + c->item_count, ids, count * sizeof *ids);
     for (uint32_t i = 0; i < count; i++) {
-        if (!is_in(&c->boxes[ids[i]], new->low, new->high))
+        csg_triangle_box own = box_of(c, ids[i]);
+        if (!is_in(&own, new->low, new->high))
             continue;
         c->inside[ids[i]] = (uint32_t)c->region_count;
         c->slots[ids[i]] = i;
@@ -114,10 +123,13 @@ static bool cut(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, d
 {
     csg_vec3 high = csg_vec3_add(low, csg_vec3_make(side, side, side));
     csg_arena_mark mark = csg_arena_get_mark(&c->arena);
-    uint32_t *own = csg_arena_alloc(&c->arena, count * sizeof *own), n = 0;
+    uint32_t meeting = 0, n = 0;
+    for (uint32_t i = 0; i < count; i++)
+        meeting += meets(c, ids[i], low, high);
+    uint32_t *own = csg_arena_alloc(&c->arena, meeting * sizeof *own);
     bool done = own != NULL;
-    for (uint32_t i = 0; done && i < count; i++)
-        if (meets(&c->boxes[ids[i]], low, high))
+    for (uint32_t i = 0; done && n < meeting; i++)
+        if (meets(c, ids[i], low, high))
             own[n++] = ids[i];
     if (done && n && (n <= MOST_OF_REGION || depth == DEEPEST))
         done = add_region(c, own, n, low, high);
@@ -182,19 +194,17 @@ static bool make_cubes(cutting *c, int round)
 {
     const csg_remesh *r = c->d->remesh;
     uint32_t count = r->corners.triangle_count, n = 0;
-    uint32_t *live = csg_arena_alloc(&c->arena, count * sizeof *live);
+    uint32_t *live = csg_arena_alloc(&c->arena, r->corners.live * sizeof *live);
     if (!live)
         return false;
     c->item_count = c->region_count = 0;
     csg_triangle_box all = csg_triangle_box_nothing();
     for (uint32_t t = 0; t < count; t++) {
-        csg_vec3 v[3];
         c->inside[t] = CSG_CORNER_NONE;
         if (!csg_corners_is_live(&r->corners, t) || t < r->closing)
             continue;
-        csg_triangle_tree_corners(&r->tree, t, v);
-        c->boxes[t] = csg_triangle_box_of(v);
-        all = csg_triangle_box_around(&all, &c->boxes[t]);
+        csg_triangle_box own = box_of(c, t);
+        all = csg_triangle_box_around(&all, &own);
         live[n++] = t;
     }
     bool done = cut_all(c, live, n, &all, round);
@@ -444,12 +454,11 @@ static bool begin(cutting *c, bool in_cubes)
     c->region_of = csg_memory_alloc(memory, vertices * sizeof *c->region_of);
     if (!c->region_of || !in_cubes)
         return c->region_of != NULL;
-    c->boxes = csg_memory_alloc(memory, triangles * sizeof *c->boxes);
     c->slots = csg_memory_alloc(memory, triangles * sizeof *c->slots);
     c->inside = csg_memory_alloc(memory, triangles * sizeof *c->inside);
     c->worker_count = csg_pool_threads(r->context->pool);
     c->workers = csg_memory_alloc(memory, c->worker_count * sizeof *c->workers);
-    bool done = c->boxes && c->slots && c->inside && c->workers;
+    bool done = c->slots && c->inside && c->workers;
     if (r->context->ranks) {
         c->vertices = csg_memory_alloc(memory, vertices * sizeof *c->vertices);
         c->version = csg_memory_alloc(memory, vertices * sizeof *c->version);
@@ -460,7 +469,8 @@ static bool begin(cutting *c, bool in_cubes)
     return done;
 }
 
-static void end(cutting *c)
+/* What is needed for cubes alone: what comes after them needs as much. */
+static void end_cubes(cutting *c)
 {
     const csg_remesh *r = c->d->remesh;
     size_t triangles = r->corners.triangle_count, vertices = r->corners.vertex_count;
@@ -476,11 +486,17 @@ static void end(cutting *c)
     csg_memory_release(memory, c->workers, c->worker_count * sizeof *c->workers);
     csg_memory_release(memory, c->inside, triangles * sizeof *c->inside);
     csg_memory_release(memory, c->slots, triangles * sizeof *c->slots);
-    csg_memory_release(memory, c->boxes, triangles * sizeof *c->boxes);
-    csg_memory_release(memory, c->region_of, vertices * sizeof *c->region_of);
     csg_memory_release(memory, c->items, c->item_capacity * sizeof *c->items);
     csg_memory_release(memory, c->regions, c->region_capacity * sizeof *c->regions);
     csg_arena_reset(&c->arena);
+    *c = (cutting){.d = c->d, .region_of = c->region_of, .is_reported = c->is_reported};
+}
+
+static void end(cutting *c)
+{
+    end_cubes(c);
+    csg_memory_release(c->d->remesh->memory, c->region_of,
+                       c->d->remesh->corners.vertex_count * sizeof *c->region_of);
     c->d->region_of = NULL;
 }
 
@@ -492,13 +508,19 @@ csgm_status csg_decimate(csg_decimation *d, uint32_t least)
     bool in_cubes = least <= CSG_DECIMATE_ALL && r->corners.live > MOST_OF_REGION;
     memset(d->state, CSG_VERTEX_FRESH, r->corners.vertex_count);
     d->least_quality = LEAST_QUALITY;
+    if (in_cubes)
+        csg_triangle_tree_forget(&r->tree); /* each cube has its own */
     csgm_status status = begin(&c, in_cubes) ? CSGM_OK : CSGM_ERR_MEMORY;
+    if (status == CSGM_OK && !in_cubes && !r->tree.nodes)
+        status = make_tree_again(r);
     for (int round = 0; round < ROUNDS && in_cubes && status == CSGM_OK; round++) {
         CSG_ZONE(r->context, "cubes");
         status = run_round(&c, round, ROUND_SHARE);
     }
-    if (status == CSGM_OK && in_cubes)
+    if (status == CSGM_OK && in_cubes) {
+        end_cubes(&c);
         status = make_tree_again(r);
+    }
     if (status == CSGM_OK) {
         CSG_ZONE(r->context, "seams");
         status = run_last(&c, least);

@@ -96,6 +96,8 @@ static csgm_status thin_out(csg_remesh *r, csg_mesh_goal *goal, const csg_missed
     CSG_ZONE(r->context, "decimation");
     csg_decimation d;
     r->error = csg_mesh_goal_error(goal);
+    if (goal->joined) /* samples move now; the tree is not asked before it is made again */
+        csg_triangle_tree_forget(&r->tree);
     csgm_status status =
         csg_decimation_begin(&d, r, missed, goal->joined ? &goal->joined->samples : NULL);
     if (status != CSGM_OK)

@@ -120,6 +120,29 @@ static bool read_slurm(batch_shard *out)
     return true;
 }
 
+/* A rank of an MPI job, as its launcher names it to the processes that it starts: no MPI is needed
+ * to read that, and processes that tell each other nothing need no more of it. */
+static bool read_mpi(batch_shard *out)
+{
+    static const char *const launchers[][2] = {
+        {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, /* Open MPI */
+        {"PMI_RANK", "PMI_SIZE"},                         /* Hydra: MPICH, Intel MPI */
+    };
+    const uint32_t none = UINT32_MAX;
+    for (size_t i = 0; i < sizeof launchers / sizeof *launchers; i++) {
+        bool good = true;
+        uint32_t rank = environment(launchers[i][0], none, &good);
+        uint32_t ranks = environment(launchers[i][1], none, &good);
+        if (good && rank == none && ranks == none)
+            continue;
+        if (!good || ranks > BATCH_SHARDS_MOST || rank >= ranks)
+            return false;
+        *out = (batch_shard){.index = rank + 1, .count = ranks};
+        return true;
+    }
+    return false;
+}
+
 int batch_shard_read(cli_app *app, batch_shard *out)
 {
     const char *text = app->options->shard, *slash, *end;
@@ -133,6 +156,12 @@ int batch_shard_read(cli_app *app, batch_shard *out)
                                      "--shard slurm: the environment has no task of a Slurm array "
                                      "(SLURM_ARRAY_TASK_ID, _MIN and _COUNT) or step "
                                      "(SLURM_PROCID, SLURM_STEP_NUM_TASKS)");
+    if (strcmp(text, "mpi") == 0)
+        return read_mpi(out) ? CLI_DONE
+                             : cli_usage_error(app, "or name the shard yourself, as --shard 3/8",
+                                               "--shard mpi: the environment has no rank of a job "
+                                               "of mpirun (OMPI_COMM_WORLD_RANK and _SIZE, or "
+                                               "PMI_RANK and PMI_SIZE)");
     if (!read_number(text, &slash, &out->index) || *slash != '/' ||
         !read_number(slash + 1, &end, &out->count) || *end)
         return cli_usage_error(app, "as --shard 3/8", "--shard wants I/N, not '%.80s'", text);

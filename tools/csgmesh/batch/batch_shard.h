@@ -20,8 +20,8 @@ void batch_job_name(const batch_job *job, char name[BATCH_JOB_NAME]);
 /* The name of the whole batch. */
 void batch_shard_name(const batch_shard *shard, char name[BATCH_JOB_NAME]);
 
-/* --shard: "3/8", or "slurm" for what the environment says. CLI_DONE, or CLI_TROUBLE after a
- * report. Without it the batch is the only shard. */
+/* --shard: "3/8", or "slurm" or "mpi" for what the environment says. CLI_DONE, or CLI_TROUBLE after
+ * a report. Without it the batch is the only shard. */
 int batch_shard_read(cli_app *app, batch_shard *out);
 /* Leaves the plan the jobs of its shard alone, and says of which batch they are. CLI_DONE, or an
  * exit status after a report. */

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "core/mesh_files.h"
 #include "core/options.h"
@@ -77,6 +80,17 @@ static csgm_limits limits_from(const cli_options *options)
     return limits;
 }
 
+/* What is given back goes to the system. By default glibc takes the large blocks that follow one
+ * that was given back from its heap, up to 32 MiB each, where what lies behind them keeps their
+ * pages: a mesh that counts 151 MiB had 206 MB then, and has 165 MB so. */
+static void give_back_large_blocks(void)
+{
+#ifdef M_MMAP_THRESHOLD
+    enum { LARGE = 1 << 17 /* what glibc begins with */ };
+    mallopt(M_MMAP_THRESHOLD, LARGE);
+#endif
+}
+
 csgm_context_options cli_app_context_options(const cli_app *app)
 {
     csgm_context_options options = csgm_context_options_default();
@@ -136,6 +150,8 @@ int cli_app_open(cli_app *app)
     int guarded = cli_sources_guard(app);
     if (guarded != CLI_DONE)
         return guarded;
+    if (app->options->given[CLI_OPTION_max_memory])
+        give_back_large_blocks();
     csgm_context_options options = cli_app_context_options(app);
     options.on_diag = take_finding;
     options.on_echo = take_echo;
