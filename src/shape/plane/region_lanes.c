@@ -53,7 +53,8 @@ typedef struct waiting {
     uint32_t child;
 } waiting;
 
-static inline void measure_box(const csg_segment_node *node, int k, const search *s, lane *out)
+static inline void measure_box(const csg_segment_tree *tree, const csg_segment_node *node, int k,
+                               const search *s, lane *out)
 {
     const lane none = {0};
     lane left = node->x0[k] - s->x, right = s->x - node->x1[k];
@@ -61,7 +62,7 @@ static inline void measure_box(const csg_segment_node *node, int k, const search
     lane dx = CHOOSE(left > right, left, right), dy = CHOOSE(below > above, below, above);
     dx = (lane)((dx > none) & (mask)dx);
     dy = (lane)((dy > none) & (mask)dy);
-    *out = dx * dx + dy * dy;
+    *out = (dx * dx + dy * dy) * CSG_SEGMENT_BOX_SHARE - tree->room;
 }
 
 /* The points go down together, and each of them looks into what it would look into by itself
@@ -83,7 +84,7 @@ static void search_node(const csg_segment_tree *tree, uint32_t node, search *s)
         }
         for (int k = CSG_SEGMENT_LANES - 1; k >= 0; k--) {
             lane squared;
-            measure_box(&tree->nodes[number], k, s, &squared);
+            measure_box(tree, &tree->nodes[number], k, s, &squared);
             mask is_near = counts & (squared < s->squared);
             if (!is_some_lane(&is_near))
                 continue;

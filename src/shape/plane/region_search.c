@@ -45,12 +45,13 @@ static inline void search_leaf(const csg_segment_tree *tree, uint32_t number, do
     }
 }
 
-static inline void box_distances(const csg_segment_node *node, double x, double y, double *squared)
+static inline void box_distances(const csg_segment_tree *tree, const csg_segment_node *node,
+                                 double x, double y, double *squared)
 {
     for (int k = 0; k < CSG_SEGMENT_LANES; k++) {
         double dx = greater(greater(node->x0[k] - x, x - node->x1[k]), 0);
         double dy = greater(greater(node->y0[k] - y, y - node->y1[k]), 0);
-        squared[k] = dx * dx + dy * dy;
+        squared[k] = (dx * dx + dy * dy) * CSG_SEGMENT_BOX_SHARE - tree->room;
     }
 }
 
@@ -73,7 +74,7 @@ static inline void search_node(const csg_segment_tree *tree, uint32_t node, uint
     for (size_t count = 0;;) {
         double squared[CSG_SEGMENT_LANES];
         const csg_segment_node *here = &tree->nodes[node];
-        box_distances(here, x, y, squared);
+        box_distances(tree, here, x, y, squared);
         for (int k = CSG_SEGMENT_LANES - 1; k >= 0; k--) {
             if (squared[k] < best->squared) {
                 waiting[count].squared = squared[k];
@@ -337,7 +338,7 @@ bool csg_segment_within(const csg_segment_tree *tree, double x, double y, double
             continue;
         }
         double squared[CSG_SEGMENT_LANES];
-        box_distances(&tree->nodes[child], x, y, squared);
+        box_distances(tree, &tree->nodes[child], x, y, squared);
         for (int k = 0; k < CSG_SEGMENT_LANES; k++)
             if (squared[k] <= limit)
                 waiting[count++] = tree->nodes[child].child[k];

@@ -161,6 +161,7 @@ static void shape_cells(csg_segment_tree *tree, size_t cells)
     double side = sqrt(width * height / (double)cells);
     tree->cells_x = side > 0 ? (uint32_t)fmin(fmax(width / side, 1), (double)cells) : 1;
     tree->cells_y = (uint32_t)(cells / tree->cells_x);
+    tree->room = 0x1p-48 * (width * width + height * height);
     tree->left = tree->box.min.x;
     tree->bottom = tree->box.min.y;
     tree->per_x = width > 0 ? tree->cells_x / width : 0;

@@ -43,8 +43,15 @@ typedef struct csg_segment_tree {
     size_t segment_capacity, node_capacity, cell_capacity;
     uint32_t cells_x, cells_y;
     double left, bottom, per_x, per_y; /* cells a length */
+    double room; /* added to squared distances of boxes: csg_segment_box_share */
     csg_box box;
 } csg_segment_tree;
+
+/* A box is nearer than a segment in it by more than the rounding of both: its squared distance
+ * times this, less `room`. Else who asks a list of leaves, without boxes, would find another
+ * segment than who asks the tree. Rounding is relative to the distance and the segment's length, d
+ * + l, of squares (d + l)^2 2^-50; 2 d l 2^-50 <= d^2 2^-40 + l^2 2^-60. */
+#define CSG_SEGMENT_BOX_SHARE (1 - 0x1p-40)
 
 typedef struct csg_segment_hit {
     double squared;   /* distance */
