@@ -442,7 +442,7 @@ static void find_off(search *s, const csg_fillet_end *axis)
 
 /* ---- all of them ------------------------------------------------------------------------------ */
 
-/* The ends of a union; *count: how many. */
+/* The ends of the union; *found: how many. */
 static bool find_ends(search *s, size_t *found)
 {
     const csg_node *node = &s->scene->nodes[s->root];

@@ -4,7 +4,6 @@
 #include "scene/tree/numbers.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "scene/operators/fillet_apart.h"
 #include "scene/operators/fillet_planes.h"
@@ -24,10 +23,15 @@ typedef struct search {
     csg_node_id *members, *made;
 } search;
 
+static bool is_ungrouped(const csg_node *node)
+{
+    return node->flags & CSG_FLAG_UNGROUPED;
+}
+
 bool csg_numbers_are_pending(const csgm_scene *scene)
 {
     for (size_t i = 0; i < scene->node_count; i++)
-        if (scene->nodes[i].flags & CSG_FLAG_UNGROUPED)
+        if (is_ungrouped(&scene->nodes[i]))
             return true;
     return false;
 }
@@ -45,11 +49,6 @@ void csg_numbers_count(const csgm_scene *scene, uint32_t *primitives, uint32_t *
 }
 
 /* ---- groups ------------------------------------------------------------------------------------ */
-
-static bool is_ungrouped(const csg_node *node)
-{
-    return node->flags & CSG_FLAG_UNGROUPED;
-}
 
 /* The first operand of the group. */
 static uint32_t first_of(const search *s, uint32_t k)
