@@ -94,8 +94,8 @@ typedef struct csg_fillet_end {
 
 /* Parameters of an operator that takes fields, and of a sharp one with soft operands only. */
 enum { CSG_OPERATOR_RULE, CSG_OPERATOR_RANGE, CSG_OPERATOR_LAMBDA, CSG_OPERATOR_FIELD_PARAMETERS };
-/* Of a fillet: n, of a union its planes (operators/fillet_planes.h) among the normals and reaches
- * of the scene, and which of its solids do not meet (operators/fillet_apart.h). */
+/* Of a fillet: n, of a union its planes (operators/union_ends.h) among the normals and reaches
+ * of the scene, and which of its solids do not meet (operators/apart.h). */
 enum {
     CSG_FILLET_N,
     CSG_FILLET_FIRST_NORMAL,
@@ -181,7 +181,7 @@ bool csg_node_is_fillet(const csg_node *node);
 /* Whether it is an operator whose blend, a number, joins nothing: a sharp one, whose n it is. */
 bool csg_node_is_idle(const csg_node *node);
 /* Whether it is a union that adds nothing beyond half-spaces that hold its operands
- * (operators/fillet_planes.h). */
+ * (operators/union_ends.h). */
 bool csg_node_ends_flush(const csg_node *node);
 /* How far the operands of a fillet, a union, reach in its own frame: operand k lies within
  * csg_fillet_towards(ends[i], p) <= reaches[k * count + i]. */

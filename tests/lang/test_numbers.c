@@ -100,6 +100,48 @@ static void figures_and_cylinders_end_flush(void **state)
         "rotate([0, 90, 0]) cylinder(h = 12, r = 6);", box, true);
 }
 
+/* Without a face that would have to stay flat: no flats, no edges. */
+static void curved_solids_stay_soft(void **state)
+{
+    (void)state;
+#define BALLS "sphere(10); translate([1, 0, 0]) sphere(10);"
+#define TUBE "capsule([0, 0, 0], [0, 12, 0], 4); "
+    check_alike("union(blend = 6) {" BALLS "}", "union(blend = round(6)) {" BALLS "}", around,
+                false);
+    check_alike("union(blend = 6) {" TUBE "torus(r = 9, tube = 5); }",
+                "union(blend = round(6)) {" TUBE "torus(r = 9, tube = 5); }", around, false);
+    /* the cylinder's cap lies within what swells */
+#define CAPPED " translate([0, 0, -5]) cylinder(h = 16, r = 4); }"
+    check_alike("union(blend = 4) { union(blend = 6) {" BALLS "}" CAPPED,
+                "union(blend = round(4)) { union(blend = round(6)) {" BALLS "}" CAPPED, around,
+                false);
+#undef BALLS
+#undef TUBE
+#undef CAPPED
+}
+
+/* Caps of what is turned, twisted or bent are faces, and so are sides that go round an axis. */
+static void what_is_warped_ends_flush(void **state)
+{
+    (void)state;
+    const csg_box box = {{-14, -14, -14}, {26, 26, 26}};
+#define TURN "rotate([20, 30, 40]) "
+    check_alike(TURN "union(blend = 3) { rotate_extrude() square([8, 12]); cylinder(h = 20, r = "
+                     "8); }",
+                TURN "cylinder(h = 20, r = 8);", box, true);
+    check_alike(TURN "union(blend = 3) { rotate_extrude() square([8, 12]); rotate_extrude() "
+                     "square([8, 15]); }",
+                TURN "cylinder(h = 15, r = 8);", box, true);
+#define TWISTED                                                                                    \
+    "union(blend = 3) { linear_extrude(20, twist = 90) square(10, center = true); cylinder(h = "   \
+    "20, r = 5.2); }"
+    check_alike(TURN TWISTED,
+                TURN "intersection() { " TWISTED " translate([-30, -30, 0]) cube([60, 60, 20]); }",
+                box, true);
+#undef TURN
+#undef TWISTED
+}
+
 static void what_does_not_meet_does_not_blend(void **state)
 {
     (void)state;
@@ -143,6 +185,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_bracket_keeps_its_faces),
         cmocka_unit_test(figures_and_cylinders_end_flush),
+        cmocka_unit_test(curved_solids_stay_soft),
+        cmocka_unit_test(what_is_warped_ends_flush),
         cmocka_unit_test(what_does_not_meet_does_not_blend),
         cmocka_unit_test(the_order_does_not_matter),
     };

@@ -87,12 +87,12 @@ typedef struct csg_fillet_choice {
 
 /* How far inside of the nearest of those half-spaces that hold all of a subset the point is, and
  * which it is: what a ball fills that rolls along some operands lies in the convex hull of these
- * (fillet_planes.h). */
+ * (union_ends.h). */
 typedef struct csg_fillet_ends {
     double (*inside)(const void *user, const csg_fillet_operand *operands,
                      const csg_fillet_choice *subset, uint32_t *plane);
     const void *user;
-    /* Whether the solids of two operands do not meet: then they do not blend (fillet_apart.h). */
+    /* Whether the solids of two operands do not meet: then they do not blend (apart.h). */
     bool (*apart)(const void *user, const csg_fillet_operand *a, const csg_fillet_operand *b);
 } csg_fillet_ends;
 

@@ -47,6 +47,14 @@ static inline double csg_box_support(const double *v, csg_vec3 n)
            v[3] * csg_vec3_norm(n);
 }
 
+static inline bool csg_box_has_face(const double *v, csg_vec3 n)
+{
+    for (int k = 0; k < 3; k++)
+        if (csg_is_along(n, k))
+            return v[(k + 1) % 3] > v[3] && v[(k + 2) % 3] > v[3];
+    return false;
+}
+
 static inline csg_term csg_box_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     return csg_term_box(t, v, v[3], p, 3);

@@ -40,6 +40,11 @@ static inline double csg_capsule_support(const double *v, csg_vec3 n)
     return fmax(v[1] * length, v[2] * length + v[0] * n.z);
 }
 
+static inline bool csg_capsule_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 static inline csg_term csg_capsule_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     double k = (v[1] - v[2]) / v[0], a = sqrt((1 - k) * (1 + k));

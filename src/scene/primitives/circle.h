@@ -25,6 +25,11 @@ static inline double csg_circle_support(const double *v, csg_vec3 n)
     return n.z == 0 ? v[0] * csg_hypot(n.x, n.y) : INFINITY;
 }
 
+static inline bool csg_circle_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 static inline csg_term csg_circle_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     return csg_term_number_sub(t, v[0], csg_term_norm2(t, p[0], p[1]));

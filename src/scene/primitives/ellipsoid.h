@@ -100,6 +100,11 @@ static inline double csg_ellipsoid_support(const double *v, csg_vec3 n)
     return csg_vec3_norm(csg_vec3_make(v[0] * n.x, v[1] * n.y, v[2] * n.z));
 }
 
+static inline bool csg_ellipsoid_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 /* The secular equation by so many steps of Newton's method; the coordinate along the shortest axis
  * is kept off 0, where the nearest points are a pair. */
 static inline csg_term csg_ellipsoid_term(csg_terms *t, const double *e, const csg_term p[3])

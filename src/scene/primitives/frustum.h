@@ -58,6 +58,11 @@ static inline double csg_frustum_support(const double *v, csg_vec3 n)
     return fmax(v[0] * across - v[2] * n.z, v[1] * across + v[2] * n.z) + v[3] * csg_vec3_norm(n);
 }
 
+static inline bool csg_frustum_has_face(const double *v, csg_vec3 n)
+{
+    return csg_is_along(n, 2) && (n.z < 0 ? v[0] : v[1]) > 0;
+}
+
 /* Distance from (rho, z) to the segment (r1, -h)-(r2, h). */
 static inline csg_term csg_frustum_slant_term(csg_terms *t, const double *v, csg_term rho,
                                               csg_term z)

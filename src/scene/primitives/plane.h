@@ -43,6 +43,13 @@ static inline double csg_plane_support(const double *v, csg_vec3 n)
     return along > 0 && across <= 2 * DBL_EPSILON * along ? along * v[3] : INFINITY;
 }
 
+static inline bool csg_plane_has_face(const double *v, csg_vec3 n)
+{
+    csg_vec3 own = csg_vec3_make(v[0], v[1], v[2]);
+    return csg_vec3_dot(own, n) > 0 &&
+           csg_vec3_norm(csg_vec3_cross(own, n)) < 1e-9 * csg_vec3_norm(n);
+}
+
 static inline csg_term csg_plane_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     csg_term sum = csg_term_mul_number(t, p[0], v[0]);

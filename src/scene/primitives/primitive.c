@@ -13,8 +13,8 @@
 /* What every primitive has; the line of a tube ends here. */
 #define COMMON(name, count, traits, call, otherwise, usual)                                        \
 #name, count, traits, call, otherwise, usual, csg_##name##_check, csg_##name##_distance,       \
-        csg_##name##_support, csg_##name##_term, csg_##name##_depth, csg_##name##_balls,           \
-        csg_##name##_example
+        csg_##name##_support, csg_##name##_has_face, csg_##name##_term, csg_##name##_depth,        \
+        csg_##name##_balls, csg_##name##_example
 
 static const csg_primitive rows[] = {
 #define CSG_PRIMITIVE(NAME, name, count, traits, call, otherwise, usual, doc)                      \

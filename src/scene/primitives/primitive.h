@@ -69,6 +69,8 @@ typedef struct csg_primitive {
     csg_sample (*distance)(const double *v, csg_vec3 p);
     /* Largest n . p over the solid {f >= 0}; INFINITY where it is unbounded. n need not be unit. */
     double (*support)(const double *v, csg_vec3 n);
+    /* Whether the solid touches that plane with a plane face, of the plane with an edge. */
+    bool (*has_face)(const double *v, csg_vec3 n);
     /* The field as a formula of the point p. */
     csg_term (*term)(csg_terms *t, const double *v, const csg_term p[3]);
     /* f at the skeleton, where all of it is as deep; else 0. */

@@ -16,6 +16,13 @@ static inline double csg_sign(double x)
     return (x > 0) - (x < 0);
 }
 
+/* Whether n, of any length, has that axis's direction, or the opposite one, but for rounding. */
+static inline bool csg_is_along(csg_vec3 n, int axis)
+{
+    const double v[3] = {fabs(n.x), fabs(n.y), fabs(n.z)};
+    return v[(axis + 1) % 3] + v[(axis + 2) % 3] < 1e-9 * v[axis];
+}
+
 /* ---- samples: value and gradient ------------------------------------------------------------ */
 
 /* A ball of radius r around `center`. */

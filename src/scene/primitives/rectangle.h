@@ -36,6 +36,11 @@ static inline double csg_rectangle_support(const double *v, csg_vec3 n)
     return fabs(n.x) * (v[0] - v[2]) + fabs(n.y) * (v[1] - v[2]) + v[2] * csg_hypot(n.x, n.y);
 }
 
+static inline bool csg_rectangle_has_face(const double *v, csg_vec3 n)
+{
+    return (csg_is_along(n, 0) && v[1] > v[2]) || (csg_is_along(n, 1) && v[0] > v[2]);
+}
+
 static inline csg_term csg_rectangle_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     return csg_term_box(t, v, v[2], p, 2);

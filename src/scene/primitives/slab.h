@@ -23,6 +23,11 @@ static inline double csg_slab_support(const double *v, csg_vec3 n)
     return n.x == 0 && n.y == 0 ? v[0] * fabs(n.z) : INFINITY;
 }
 
+static inline bool csg_slab_has_face(const double *v, csg_vec3 n)
+{
+    return csg_is_along(n, 2);
+}
+
 static inline csg_term csg_slab_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     return csg_term_number_sub(t, v[0], csg_term_abs(t, p[2]));

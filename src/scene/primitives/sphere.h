@@ -23,6 +23,11 @@ static inline double csg_sphere_support(const double *v, csg_vec3 n)
     return v[0] * csg_vec3_norm(n);
 }
 
+static inline bool csg_sphere_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 static inline csg_term csg_sphere_term(csg_terms *t, const double *v, const csg_term p[3])
 {
     return csg_term_number_sub(t, v[0], csg_term_norm3(t, p[0], p[1], p[2]));

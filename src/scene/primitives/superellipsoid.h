@@ -80,6 +80,11 @@ static inline double csg_superellipsoid_support(const double *v, csg_vec3 n)
     return csg_dual_norm(across, v[2] * n.z, v[4]) * (1 + 16 * DBL_EPSILON);
 }
 
+static inline bool csg_superellipsoid_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 /* (|x|^n + |y|^n)^(1/n) */
 static inline csg_term csg_power_norm_term(csg_terms *t, csg_term x, csg_term y, double n)
 {

@@ -48,6 +48,11 @@ static inline double csg_torus_support(const double *v, csg_vec3 n)
     return v[0] * reach + v[1] * csg_vec3_norm(n);
 }
 
+static inline bool csg_torus_has_face(const double *v, csg_vec3 n)
+{
+    return false;
+}
+
 /* In the plane the squared distance to the arc is rho^2 + R^2 - 2 R g, where g is rho within the
  * arc's angle and the part of the point along its end elsewhere. */
 static inline csg_term csg_torus_term(csg_terms *t, const double *v, const csg_term p[3])

@@ -161,6 +161,10 @@ static inline void csg_tube_example(csg_primitive_kind kind, csg_random *random,
     {                                                                                              \
         return csg_tube_support(CSG_NODE_##NAME, v, n);                                            \
     }                                                                                              \
+    static inline bool csg_##name##_has_face(const double *v, csg_vec3 n)                          \
+    {                                                                                              \
+        return false;                                                                              \
+    }                                                                                              \
     static inline csg_term csg_##name##_term(csg_terms *t, const double *v, const csg_term p[3])   \
     {                                                                                              \
         return csg_tube_term(CSG_NODE_##NAME, t, v, p);                                            \

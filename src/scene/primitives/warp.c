@@ -317,6 +317,43 @@ static csg_box bend_box(const double *v, csg_box child, bool all_round)
     return isfinite(farthest) ? box : csg_box_all();
 }
 
+/* ---- planes -----------------------------------------------------------------------------------
+ */
+
+static bool revolve_plane(csg_vec3 n, csg_vec3 *child)
+{
+    *child = vec3(0, n.z, 0);
+    return n.x == 0 && n.y == 0;
+}
+
+static bool elbow_plane(csg_vec3 n, csg_vec3 *child)
+{
+    return revolve_plane(n, child);
+}
+
+static bool slice_plane(csg_vec3 n, csg_vec3 *child)
+{
+    *child = n;
+    return n.z == 0;
+}
+
+static bool twist_plane(csg_vec3 n, csg_vec3 *child)
+{
+    *child = n;
+    return n.x == 0 && n.y == 0;
+}
+
+static bool taper_plane(csg_vec3 n, csg_vec3 *child)
+{
+    return twist_plane(n, child);
+}
+
+static bool bend_plane(csg_vec3 n, csg_vec3 *child)
+{
+    *child = n;
+    return n.x == 0 && n.z == 0;
+}
+
 /* ---- the table --------------------------------------------------------------------------------
  * A function that a warp lacks is an error here that names it.
  */
@@ -330,12 +367,13 @@ typedef struct warp_row {
     csg_warped (*at)(const double *v, csg_vec3 p);
     double (*scale)(const double *v);
     csg_box (*box)(const double *v, csg_box child, bool all_round);
+    bool (*plane)(csg_vec3 n, csg_vec3 *child);
 } warp_row;
 
 static const warp_row rows[CSG_WARP_COUNT] = {
 #define CSG_WARP(NAME, name, given, traits, doc)                                                   \
-    [CSG_WARP_##NAME] = {#name,         given,     traits,       name##_check,                     \
-                         name##_settle, name##_at, name##_scale, name##_box},
+    [CSG_WARP_##NAME] = {#name,     given,        traits,     name##_check, name##_settle,         \
+                         name##_at, name##_scale, name##_box, name##_plane},
 #include "scene/primitives/warps.def"
 
 };
@@ -369,6 +407,11 @@ bool csg_warp_check(const csg_warp *warp, csg_refusal *refusal)
 bool csg_warp_settle(csg_warp *warp, csg_box child, const char **why)
 {
     return row_of(warp->kind)->settle(warp, child, why);
+}
+
+bool csg_warp_plane(const csg_warp *warp, csg_vec3 n, csg_vec3 *child)
+{
+    return row_of(warp->kind)->plane(n, child);
 }
 
 csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p)

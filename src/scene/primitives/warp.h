@@ -45,6 +45,10 @@ typedef struct csg_warped {
     csg_vec3 column[3]; /* dw / dx, dw / dy, dw / dz; one-sided where w has a kink */
 } csg_warped;
 
+/* Whether planes with this normal are planes of the child's frame, and *child, their normal there:
+ * what is warped reaches no farther along one than the child along the other. */
+bool csg_warp_plane(const csg_warp *warp, csg_vec3 n, csg_vec3 *child);
+
 csg_warped csg_warp_at(const csg_warp *warp, csg_vec3 p);
 /* 1 / L */
 double csg_warp_scale(const csg_warp *warp);

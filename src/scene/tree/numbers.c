@@ -5,13 +5,10 @@
 
 #include <math.h>
 
-#include "scene/operators/fillet_apart.h"
-#include "scene/operators/fillet_planes.h"
+#include "scene/operators/apart.h"
+#include "scene/operators/union_ends.h"
 #include "scene/primitives/kinds.h"
 #include "scene/tree/build_private.h"
-
-/* Ends that this many radii lie beyond all operands but one are far from any blend. */
-static const double FAR = 2;
 
 typedef struct search {
     csg_scene_builder *builder;
@@ -139,18 +136,10 @@ static bool is_unended(const csg_node *node)
     return node->flags & CSG_FLAG_UNENDED;
 }
 
-/* How far the operands reach towards an end. False: no blend of them does, or there is no end. */
-static bool reaches_end(const search *s, const csg_node *node, const csg_fillet_planes *ends,
-                        size_t i, double *reach)
+/* A fillet does by itself; what is above it asks where. */
+static bool ends_flush(const csg_node *node)
 {
-    double most = -INFINITY, next = -INFINITY, r = csg_scene_blend(s->scene, node).n;
-    for (uint32_t k = 0; k < node->child_count; k++) {
-        double one = ends->reaches[k * ends->count + i];
-        next = fmax(next, fmin(most, one));
-        most = fmax(most, one);
-    }
-    *reach = most;
-    return isfinite(most) && next >= most - FAR * r && (!ends->ends[i].is_round || most > 0);
+    return is_unended(node) || csg_node_is_fillet(node);
 }
 
 /* As good as an infinite cylinder: one that is longer than all operands. */
@@ -187,10 +176,12 @@ static csg_node_id build_end(const search *s, const csg_node *node, const csg_fi
 }
 
 /* The builder's node becomes the union within its ends. */
-static bool take_ends(void *user, csg_node_id id, const csg_fillet_planes *ends)
+static bool take_ends(void *user, csg_node_id id, const csg_union_ends *ends)
 {
     const search *s = user;
     const csg_node *node = &s->scene->nodes[id];
+    if (!is_unended(node))
+        return true;
     csgm_scene *built = s->builder->scene;
     csg_memory *memory = &s->builder->context->memory;
     csg_node_id origin = s->origins[id];
@@ -203,10 +194,9 @@ static bool take_ends(void *user, csg_node_id id, const csg_fillet_planes *ends)
         built->nodes[built->node_count++] = built->nodes[origin];
     }
     for (size_t i = 0; i < ends->count && done; i++) {
-        double reach;
-        if (!reaches_end(s, node, ends, i, &reach))
+        if (!isfinite(ends->flush[i]))
             continue;
-        operands[count] = build_end(s, node, &ends->ends[i], reach);
+        operands[count] = build_end(s, node, &ends->ends[i], ends->flush[i]);
         done = operands[count++] != CSG_NODE_NONE;
     }
     if (done && count > 1) {
@@ -252,7 +242,7 @@ csgm_status csg_numbers_end(csg_scene_builder *builder, const csgm_scene *scene,
                             const csg_node_id *origins)
 {
     search s = {.builder = builder, .scene = scene, .origins = origins};
-    csgm_status status = csg_union_ends_find(scene, is_unended, take_ends, &s);
+    csgm_status status = csg_union_ends_find(scene, ends_flush, take_ends, &s);
     return builder->status != CSGM_OK ? builder->status : status;
 }
 

@@ -3,9 +3,9 @@
  * top of round, which knows nothing but values, and so grew solids together that never meet, and
  * let faces swell that they have in common:
  *   - operands fall into groups: two are in one if they meet, or a chain of others leads from one
- *     to the other (operators/fillet_apart.h). Each group is blended by itself;
- *   - a group's union is cut by the half-spaces and cylinders that hold all of its operands
- *     (operators/fillet_planes.h).
+ *     to the other (operators/apart.h). Each group is blended by itself;
+ *   - a group's union is cut by the half-spaces and cylinders that hold all of its operands and in
+ *     which one of them has a face (operators/union_ends.h): what is curved may swell.
  * Of a difference the first operand's complement and those subtracted are grouped alike; nothing
  * is cut there, for a complement has no hull. An intersection is as with round(r), and so is
  * an operator with soft operands, whose fields say little about where they meet.

@@ -5,9 +5,9 @@
  * of each node are computed once, here.
  */
 #include "scene/boxes/bounds.h"
-#include "scene/operators/fillet_apart.h"
-#include "scene/operators/fillet_planes.h"
+#include "scene/operators/apart.h"
 #include "scene/operators/rule.h"
+#include "scene/operators/union_ends.h"
 #include "scene/tree/build.h"
 #include "scene/tree/numbers.h"
 #include "scene/tree/softness.h"

@@ -9,8 +9,8 @@
  * Where neither does, the two may meet. What is found of two solids depends on how many operands
  * there are and on what it takes to ask them, not on their order.
  */
-#ifndef CSG_SCENE_FILLET_APART_H
-#define CSG_SCENE_FILLET_APART_H
+#ifndef CSG_SCENE_APART_H
+#define CSG_SCENE_APART_H
 
 #include "scene/scene.h"
 

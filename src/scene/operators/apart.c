@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Solids of a blend that do not meet; see fillet_apart.h.
+ * Solids of a blend that do not meet; see apart.h.
  */
-#include "scene/operators/fillet_apart.h"
+#include "scene/operators/apart.h"
 
 #include <math.h>
 #include <stdlib.h>
