@@ -142,6 +142,27 @@ static void what_is_warped_ends_flush(void **state)
 #undef TWISTED
 }
 
+/* As OpenSCAD's files make half a ball, and a post with a round head. */
+static void cut_and_rounded_solids_end_flush(void **state)
+{
+    (void)state;
+    const csg_box box = {{-16, -16, -16}, {16, 16, 21}};
+#define HALF                                                                                       \
+    "union(blend = 3) { difference() { sphere(15); translate([-20, -20, -40]) cube(40); } "        \
+    "cylinder(h = 20, r = 5); }"
+    check_alike("rotate([20, 30, 40]) " HALF,
+                "rotate([20, 30, 40]) intersection() { " HALF
+                " translate([-20, -20, 0]) cube(40); }",
+                box, true);
+#undef HALF
+    check_alike("union(blend = 3) { cylinder(h = 20, r = 5); sphere(5); translate([0, 0, 20]) "
+                "torus(r = 3, tube = 2); }",
+                "intersection() { union(blend = round(3)) { cylinder(h = 20, r = 5); sphere(5); "
+                "translate([0, 0, 20]) torus(r = 3, tube = 2); } translate([0, 0, -30]) "
+                "cylinder(h = 60, r = 5); }",
+                box, true);
+}
+
 static void what_does_not_meet_does_not_blend(void **state)
 {
     (void)state;
@@ -187,6 +208,7 @@ int main(void)
         cmocka_unit_test(figures_and_cylinders_end_flush),
         cmocka_unit_test(curved_solids_stay_soft),
         cmocka_unit_test(what_is_warped_ends_flush),
+        cmocka_unit_test(cut_and_rounded_solids_end_flush),
         cmocka_unit_test(what_does_not_meet_does_not_blend),
         cmocka_unit_test(the_order_does_not_matter),
     };

@@ -73,10 +73,10 @@ double csg_box_reach(csg_box box, csg_vec3 n);
 bool csg_end_find_normals(csg_end_search *s);
 /* Fills in axes; after the normals. */
 void csg_end_find_axes(csg_end_search *s);
-/* The axis of a node in the union's frame: the same for all nodes around it. *scale: of lengths in
- * its own frame. False: it has none, or its frame makes it no circle. */
-bool csg_end_axis(const csg_end_search *s, size_t i, csg_fillet_end *out, double *scale);
-bool csg_is_same_axis(const csg_fillet_end *a, const csg_fillet_end *b);
+/* Whether the node is turned about that axis; *scale: of its lengths in the union's frame. */
+bool csg_end_is_about(const csg_end_search *s, size_t i, const csg_fillet_end *axis, double *scale);
+/* Of a primitive that is: whether its side is a face about its axis. */
+bool csg_end_has_side(const csg_node *node);
 
 /* Fill in reaches: along a normal of the union's frame, and off an axis in it. */
 void csg_end_find_reaches(csg_end_search *s, csg_vec3 n);

@@ -8,6 +8,7 @@
 
 #include "scene/operators/union_ends_private.h"
 #include "scene/primitives/kinds.h"
+#include "scene/primitives/primitive.h"
 #include "scene/warp_kinds.h"
 #include "shape/plane/region.h"
 #include "shape/polyhedra/polyhedron.h"
@@ -185,23 +186,51 @@ static double least_positive(double x, double otherwise)
     return x != 0 ? x : otherwise;
 }
 
-static bool is_round(const csgm_scene *scene, const csg_node *node)
+static bool is_turned(const csgm_scene *scene, const csg_node *node)
 {
-    return node->kind == CSG_NODE_FRUSTUM || node->kind == CSG_NODE_CIRCLE ||
+    return csg_primitive_has(node->kind, CSG_TRAIT_TURNED) ||
            (node->kind == CSG_NODE_WARP && scene->warps[node->payload].kind == CSG_WARP_REVOLVE);
 }
 
-bool csg_end_axis(const csg_end_search *s, size_t i, csg_fillet_end *out, double *scale)
+/* Where its z axis lies in the union's frame. False: it is not turned, or no circle there. */
+static bool find_axis(const csg_end_search *s, size_t i, csg_vec3 *n, csg_vec3 *foot, double *scale)
 {
-    const csg_node *node = &s->scene->nodes[i];
     csg_affine place;
-    if (!s->is_placed[i] || (!is_round(s->scene, node)) ||
+    if (!s->is_placed[i] || !is_turned(s->scene, &s->scene->nodes[i]) ||
         !csg_affine_invert(s->to_own[i], &place) || !csg_affine_is_similarity(&place))
         return false;
-    csg_vec3 n = csg_vec3_make(place.m[0][2], place.m[1][2], place.m[2][2]);
-    csg_vec3 foot = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
-    *scale = csg_vec3_norm(n);
-    n = csg_vec3_normalize(n);
+    *n = csg_vec3_make(place.m[0][2], place.m[1][2], place.m[2][2]);
+    *foot = csg_vec3_make(place.t[0], place.t[1], place.t[2]);
+    *scale = csg_vec3_norm(*n);
+    *n = csg_vec3_normalize(*n);
+    return true;
+}
+
+bool csg_end_is_about(const csg_end_search *s, size_t i, const csg_fillet_end *axis, double *scale)
+{
+    csg_vec3 n, at, away;
+    if (!find_axis(s, i, &n, &at, scale))
+        return false;
+    bool is_along = csg_primitive_has(s->scene->nodes[i].kind, CSG_TRAIT_BALL) ||
+                    is_near(n, axis->normal) || is_near(csg_vec3_scale(n, -1), axis->normal);
+    return is_along &&
+           csg_fillet_towards(axis, at, &away) < csg_near_end(csg_vec3_norm(axis->foot));
+}
+
+bool csg_end_has_side(const csg_node *node)
+{
+    return node->kind == CSG_NODE_FRUSTUM || node->kind == CSG_NODE_CIRCLE;
+}
+
+/* The same for all nodes around it. */
+static bool axis_of(const csg_end_search *s, size_t i, csg_fillet_end *out)
+{
+    const csg_node *node = &s->scene->nodes[i];
+    csg_vec3 n, foot;
+    double scale;
+    if ((!csg_end_has_side(node) && node->kind != CSG_NODE_WARP) ||
+        !find_axis(s, i, &n, &foot, &scale))
+        return false;
     n = csg_vec3_make(snapped(n.x), snapped(n.y), snapped(n.z));
     if (least_positive(n.x, least_positive(n.y, n.z)) < 0)
         n = csg_vec3_make(0 - n.x, 0 - n.y, 0 - n.z);
@@ -210,10 +239,10 @@ bool csg_end_axis(const csg_end_search *s, size_t i, csg_fillet_end *out, double
     return true;
 }
 
-bool csg_is_same_axis(const csg_fillet_end *a, const csg_fillet_end *b)
+static bool is_same_axis(const csg_fillet_end *a, const csg_fillet_end *b)
 {
     return is_near(a->normal, b->normal) &&
-           csg_vec3_norm(csg_vec3_sub(a->foot, b->foot)) < 1e-9 * (1 + csg_vec3_norm(a->foot));
+           csg_vec3_norm(csg_vec3_sub(a->foot, b->foot)) < csg_near_end(csg_vec3_norm(a->foot));
 }
 
 static int compare_axes(const csg_fillet_end *a, const csg_fillet_end *b)
@@ -229,11 +258,10 @@ void csg_end_find_axes(csg_end_search *s)
     for (size_t n = 1; n < s->seen_count; n++) {
         csg_node_id i = s->seen[n];
         csg_fillet_end made;
-        double scale;
         size_t at = 0;
-        if (!csg_end_axis(s, i, &made, &scale))
+        if (!axis_of(s, i, &made))
             continue;
-        while (at < s->axis_count && !csg_is_same_axis(&s->axes[at], &made))
+        while (at < s->axis_count && !is_same_axis(&s->axes[at], &made))
             at++;
         if (at < s->axis_count) {
             if (compare_axes(&made, &s->axes[at]) < 0)

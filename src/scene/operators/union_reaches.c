@@ -154,6 +154,65 @@ static csg_end_reach sides_reach(const csg_end_search *s, csg_node_id i)
     return all;
 }
 
+/* The part of a box beyond n p = d, where n has an axis's direction; else the box. */
+static csg_box box_beyond(csg_box box, csg_vec3 n, double d)
+{
+    const double v[3] = {n.x, n.y, n.z};
+    double *const low[3] = {&box.min.x, &box.min.y, &box.min.z};
+    double *const high[3] = {&box.max.x, &box.max.y, &box.max.z};
+    for (int k = 0; k < 3; k++) {
+        if (v[(k + 1) % 3] != 0 || v[(k + 2) % 3] != 0)
+            continue;
+        if (v[k] > 0)
+            *low[k] = fmax(*low[k], d / v[k]);
+        else
+            *high[k] = fmin(*high[k], d / v[k]);
+    }
+    return box;
+}
+
+/* What is subtracted, a convex primitive: where along n the box ends if it takes all of it beyond a
+ * face. Else INFINITY. */
+static double cut_at(const csgm_scene *scene, csg_node_id i, csg_vec3 n, csg_box box)
+{
+    const csg_node *node = &scene->nodes[i];
+    csg_affine to_own = csg_affine_identity(), place;
+    for (; node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR;
+         node = &scene->nodes[csg_scene_children(scene, node)[0]])
+        if (node->kind == CSG_NODE_TRANSFORM)
+            to_own = csg_affine_multiply(scene->inverses[node->payload], to_own);
+    if (!csg_primitive_has(node->kind, CSG_TRAIT_CONVEX) || !csg_affine_invert(to_own, &place))
+        return INFINITY;
+    const csg_primitive *p = csg_primitive_of(node->kind);
+    const double *v = csg_scene_parameters(scene, node);
+    csg_vec3 back = csg_affine_covector(&place, csg_vec3_scale(n, -1));
+    double at =
+        csg_vec3_dot(n, csg_vec3_make(place.t[0], place.t[1], place.t[2])) - p->support(v, back);
+    if (!isfinite(at) || !p->has_face(v, back))
+        return INFINITY;
+    box = box_beyond(box, n, at);
+    for (int k = 0; k < 8; k++) {
+        csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                           k & 4 ? box.max.z : box.min.z};
+        if (p->distance(v, csg_affine_point(&to_own, corner)).value < -csg_near_end(0))
+            return INFINITY;
+    }
+    return at;
+}
+
+/* Within its first operand, and what is left where another takes all beyond a face. */
+static csg_end_reach difference_reach(const csg_end_search *s, const csg_node *node, csg_vec3 n)
+{
+    const csg_node_id *children = csg_scene_children(s->scene, node);
+    csg_end_reach all = s->reaches[children[0]];
+    csg_box box = s->scene->bounds[children[0]];
+    if (s->is_loose[children[0]] || !csg_box_is_finite(box))
+        return all;
+    for (uint32_t k = 1; k < node->child_count; k++)
+        all = nearer(all, (csg_end_reach){cut_at(s->scene, children[k], n, box), true});
+    return all;
+}
+
 /* Of what stands below the union: INFINITY where it is not known. */
 static csg_end_reach node_reach(const csg_end_search *s, csg_node_id i)
 {
@@ -182,7 +241,8 @@ static csg_end_reach node_reach(const csg_end_search *s, csg_node_id i)
         return sides_reach(s, i);
     if (!csg_node_is_operator(node->kind) || !is_within(node) || csg_union_adds(node))
         return (csg_end_reach){INFINITY, false};
-    return children_reach(s, node);
+    return node->kind == CSG_NODE_DIFFERENCE ? difference_reach(s, node, n)
+                                             : children_reach(s, node);
 }
 
 /* Of an operand grown by its ball, where its box tells that it is. */
@@ -245,16 +305,16 @@ static csg_end_reach node_off(const csg_end_search *s, size_t i, const csg_fille
 {
     const csg_node *node = &s->scene->nodes[i];
     const csg_node_id *children = csg_scene_children(s->scene, node);
-    csg_fillet_end own;
     double scale;
-    if (csg_end_axis(s, i, &own, &scale) && csg_is_same_axis(&own, axis)) {
-        const double *v = csg_scene_parameters(s->scene, node);
-        if (node->kind == CSG_NODE_CIRCLE)
-            return (csg_end_reach){scale * v[0], true};
-        if (node->kind == CSG_NODE_FRUSTUM)
-            return (csg_end_reach){scale * (fmax(v[0], v[1]) + v[3]), true};
+    bool is_about = csg_end_is_about(s, i, axis, &scale);
+    if (is_about && node->kind == CSG_NODE_WARP) {
         csg_end_reach figure = s->reaches[children[0]];
         return (csg_end_reach){scale * fmax(figure.at, 0), figure.has_face};
+    }
+    if (is_about) {
+        double off = csg_primitive_of(node->kind)
+                         ->support(csg_scene_parameters(s->scene, node), csg_vec3_make(1, 0, 0));
+        return (csg_end_reach){scale * off, csg_end_has_side(node)};
     }
     if (node->kind == CSG_NODE_TRANSFORM || node->kind == CSG_NODE_COLOR)
         return children_reach(s, node);
@@ -272,13 +332,11 @@ static void hand_down_figures(csg_end_search *s, const csg_fillet_end *axis)
     for (size_t at = 0; at < s->seen_count; at++) {
         csg_node_id i = s->seen[at];
         const csg_node *node = &s->scene->nodes[i];
-        csg_fillet_end own;
         double scale;
         if (at > 0 && csg_union_adds(node))
             continue;
         hand_down(s, i);
-        if (node->kind == CSG_NODE_WARP && csg_end_axis(s, i, &own, &scale) &&
-            csg_is_same_axis(&own, axis))
+        if (node->kind == CSG_NODE_WARP && csg_end_is_about(s, i, axis, &scale))
             s->normals[csg_scene_children(s->scene, node)[0]] = csg_vec3_make(1, 0, 0);
     }
 }

@@ -27,8 +27,10 @@ enum {
     CSG_TRAIT_FACES = 128, /* gradients as in cone_ball.h, "faces" */
     CSG_TRAIT_GAUGE =
         256, /* f = depth (1 - d) with d(t p) = t d(p): {f >= -level} is the solid scaled */
-    CSG_TRAIT_CURVE = 512,  /* along a Bezier curve: leaves of the tape are pieces of it */
-    CSG_TRAIT_STEADY = 1024 /* where `gradients` adds one ball around the gradient at its centre,
+    CSG_TRAIT_CURVE = 512,   /* along a Bezier curve: leaves of the tape are pieces of it */
+    CSG_TRAIT_TURNED = 2048, /* turned about its z axis it stays as it is, or lies in such a solid
+                                that reaches no farther along x */
+    CSG_TRAIT_STEADY = 1024  /* where `gradients` adds one ball around the gradient at its centre,
                                they stray from it in proportion to the distance, or less */
 };
 
