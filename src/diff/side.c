@@ -13,7 +13,6 @@
 #include "base/trace.h"
 #include "mesh/inspect.h"
 #include "mesh/view.h"
-#include "shape/polyhedra/piece.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
 
@@ -251,6 +250,9 @@ void csg_diff_pair_release(csg_diff_pair *pair)
 static csgm_status make_tree(csg_diff_pair *pair, csg_diff_side *side)
 {
     if (!csg_tree_make(&pair->context->memory, &side->arena, &side->chain, &side->tree))
+        return CSGM_ERR_MEMORY;
+    side->across = csg_arena_alloc(&side->arena, side->tree.count * sizeof *side->across);
+    if (!side->across || !csg_across_make(&side->arena, &side->chain, &side->tree, side->across))
         return CSGM_ERR_MEMORY;
     side->slack += csg_piece_slack(&side->tree);
     return CSGM_OK;

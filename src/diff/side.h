@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/context.h"
-#include "shape/polyhedra/tree.h"
+#include "shape/polyhedra/cover.h"
 
 /* A mesh may be looked at with another axis up. */
 typedef enum csg_diff_turn {
@@ -29,7 +29,8 @@ typedef struct csg_diff_side {
     uint32_t *points;    /* the ones that this side's triangles use, in order of first use */
     size_t point_count;
     csg_tree tree;
-    double slack; /* frame units: distances to this mesh are computed so exactly */
+    csg_across *across; /* per triangle of the tree */
+    double slack;       /* frame units: distances to this mesh are computed so exactly */
     csgm_mesh_check check;
     bool is_closed;
     /* By csg_diff_measure_points: of each of `points` to the other mesh, indexed by point. */
