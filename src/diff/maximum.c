@@ -146,10 +146,8 @@ static uint64_t key_of(float bound, size_t triangle)
 
 static void extend_differing(engine *e, size_t triangle)
 {
-    for (int k = 0; k < 3; k++) {
-        csg_vec3 p = csg_diff_corner(e->side, triangle, k);
-        e->search->differing = csg_box_hull(e->search->differing, (csg_box){p, p});
-    }
+    for (int k = 0; k < 3; k++)
+        csg_box_extend(&e->search->differing, csg_diff_corner(e->side, triangle, k));
 }
 
 /* Lists what is above the target; the rest is settled. */
@@ -427,36 +425,39 @@ static void start_from_points(engine *e)
     e->search->is_found = true;
 }
 
+static csgm_status search_maximum(engine *e)
+{
+    csg_diff_side *side = &e->pair->sides[e->search->from];
+    csg_pool *pool = e->pair->context->pool;
+    size_t run_count = (side->chain.count + RUN - 1) / RUN;
+    e->bounds = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e->bounds);
+    e->keys = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e->keys);
+    if (!e->bounds || !e->keys)
+        return csg_context_no_memory(e->pair->context);
+    csg_diff_take(e->pair, 0.05);
+    if (!csg_pool_run(pool, run_count, bound_run, report_items, e))
+        return CSGM_CANCELLED;
+    list_keys(e);
+    return run_batches(e);
+}
+
 csgm_status csg_diff_find_maximum(csg_diff_pair *pair, csg_diff_maximum *search)
 {
     csg_memory *memory = &pair->context->memory;
-    csg_diff_side *side = &pair->sides[search->from];
-    csg_arena_mark mark = csg_arena_get_mark(&side->arena);
     engine e = {.pair = pair,
                 .search = search,
-                .side = side,
+                .side = &pair->sides[search->from],
                 .other = &pair->sides[1 - search->from],
                 .cuts_of_item = CUTS_OF_ITEM};
-    e.bounds = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e.bounds);
-    e.keys = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e.keys);
-    csgm_status status = CSGM_OK;
     search->upper = 0;
-    csg_diff_take(pair, 0.05);
-    if (!e.bounds || !e.keys)
-        status = csg_context_no_memory(pair->context);
-    if (status == CSGM_OK) {
-        start_from_points(&e);
-        if (!csg_pool_run(pair->context->pool, (side->chain.count + RUN - 1) / RUN, bound_run,
-                          report_items, &e))
-            status = CSGM_CANCELLED;
-    }
-    if (status == CSGM_OK) {
-        list_keys(&e);
-        status = run_batches(&e);
-    }
+    start_from_points(&e);
+    if (!is_verdict_known(search) && !csg_diff_pair_link(pair))
+        return csg_context_no_memory(pair->context);
+    csg_arena_mark mark = csg_arena_get_mark(&pair->sides[search->from].arena);
+    csgm_status status = search_maximum(&e);
     search->upper = fmax(search->upper, search->lower);
     csg_memory_release(memory, e.items, e.item_room * sizeof *e.items);
     csg_memory_release(memory, e.waiting, e.waiting_room * sizeof *e.waiting);
-    csg_arena_release_to(&side->arena, mark);
+    csg_arena_release_to(&pair->sides[search->from].arena, mark);
     return status;
 }

@@ -250,7 +250,8 @@ static bool cut_all(walk *w, uint32_t place, footing *f)
     for (int k = 0; k < 3 && f->count >= 3; k++) {
         if (share_beyond(f, k) != ALL_BEYOND)
             continue;
-        csg_piece rest = {.count = f->count};
+        csg_piece rest;
+        rest.count = f->count;
         memcpy(rest.corners, f->corners, f->count * sizeof *f->corners);
         double bound = is_cut ? csg_piece_bound(&rest, t, &ignored) : INFINITY;
         return bound <= w->enough ? settle(w, bound) : hand_over(w, place, k, f);
