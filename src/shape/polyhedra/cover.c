@@ -185,12 +185,14 @@ static seat between(const seat *from, const seat *to, double part, int edge)
     return s;
 }
 
-/* Takes what is beyond an edge off; beyond->count is below 3 where there is nothing. */
-static void cut_off(footing *f, int edge, csg_piece *beyond)
+/* Takes what is beyond an edge off; beyond->count is below 3 where there is nothing. False:
+ * rounding has made the piece so far from convex that the edge's line crosses it more than twice,
+ * and corners might be more than there is room for. */
+static bool cut_off(footing *f, int edge, csg_piece *beyond)
 {
     csg_vec3 corners[CSG_PIECE_CORNERS];
     seat seats[CSG_PIECE_CORNERS];
-    uint32_t count = 0, outside = 0;
+    uint32_t count = 0, outside = 0, crossings = 0;
     for (uint32_t i = 0; i < f->count; i++) {
         uint32_t j = i + 1 < f->count ? i + 1 : 0;
         csg_vec3 p = f->corners[i], q = f->corners[j];
@@ -202,6 +204,8 @@ static void cut_off(footing *f, int edge, csg_piece *beyond)
         if (here <= 0)
             beyond->corners[outside++] = p;
         if ((here > 0 && there < 0) || (here < 0 && there > 0)) {
+            if (++crossings > 2)
+                return false;
             double part = here / (here - there);
             corners[count] = csg_vec3_add(p, csg_vec3_scale(csg_vec3_sub(q, p), part));
             seats[count] = between(&f->seats[i], &f->seats[j], part, edge);
@@ -212,6 +216,7 @@ static void cut_off(footing *f, int edge, csg_piece *beyond)
     f->count = count;
     memcpy(f->corners, corners, count * sizeof *corners);
     memcpy(f->seats, seats, count * sizeof *seats);
+    return true;
 }
 
 static bool settle(walk *w, double bound)
@@ -224,7 +229,8 @@ static bool settle(walk *w, double bound)
 static bool hand_over(walk *w, uint32_t place, int edge, footing *f)
 {
     csg_piece *beyond = &w->stack[w->depth];
-    cut_off(f, edge, beyond);
+    if (!cut_off(f, edge, beyond))
+        return false;
     beyond->hint = w->across[place].places[edge];
     if (beyond->count < 3)
         return true;
