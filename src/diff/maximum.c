@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Branch and bound; see maximum.h. A triangle's distance is bounded from above by that of its
- * corners to one triangle of the other mesh, since that is convex; what is above the target is cut
- * along the nearest triangle's edges (or halved where the nearest place is on an edge) and its
+ * corners to one triangle of the other mesh, since that is convex, or by a walk over the other mesh
+ * (shape/polyhedra/cover.h), which settles most of two close surfaces; what is above the target is
+ * cut along the nearest triangle's edges (or halved where the nearest place is on an edge) and its
  * parts looked up anew. Every distance computed at a point is a lower bound.
  *
  * Triangles are taken in the order of their bounds, in batches that double. Within a batch each
@@ -15,7 +16,6 @@
 #include <string.h>
 
 #include "base/pool.h"
-#include "shape/polyhedra/piece.h"
 
 enum {
     RUN = 4096,         /* triangles bounded at a time */
@@ -63,11 +63,18 @@ static double target_of(const engine *e, double lower)
     return fmax(target, fmax(tolerance, e->search->floor));
 }
 
+/* What is known to be above the tolerance is enough where only the verdict is asked for. */
+static bool is_verdict_known(const csg_diff_maximum *search)
+{
+    return search->verdict_only && search->lower > search->tolerance;
+}
+
 /* ---- bounds of whole triangles -------------------------------------------------------------- */
 
 static csg_piece piece_of(const engine *e, size_t triangle)
 {
-    csg_piece piece = {.count = 3};
+    csg_piece piece;
+    piece.count = 3;
     const uint32_t *corners = e->side->chain.corners[triangle];
     double most = -1;
     for (int k = 0; k < 3; k++) {
@@ -80,20 +87,36 @@ static csg_piece piece_of(const engine *e, size_t triangle)
     return piece;
 }
 
-static double bound_of(const engine *e, size_t triangle, double enough)
+/* By one triangle of the other mesh: the best of those that are nearest to the corners. */
+static double bound_by_one(const engine *e, const csg_piece *piece, const uint32_t *corners)
 {
-    csg_piece piece = piece_of(e, triangle);
-    const uint32_t *corners = e->side->chain.corners[triangle];
     double least = INFINITY;
     uint32_t ignored, last = UINT32_MAX;
-    for (int k = 0; k < 3 && least > enough; k++) {
+    for (int k = 0; k < 3; k++) {
         uint32_t place = e->side->nearest[corners[k]];
         if (place != last)
-            least =
-                fmin(least, csg_piece_bound(&piece, &e->other->tree.triangles[place], &ignored));
+            least = fmin(least, csg_piece_bound(piece, &e->other->tree.triangles[place], &ignored));
         last = place;
     }
     return least;
+}
+
+/* Of triangles that both meshes have it is 0. Where both surfaces lie close together, most others
+ * are shown to be within the target without a search. */
+static double bound_of(const engine *e, size_t triangle)
+{
+    csg_piece piece = piece_of(e, triangle);
+    const uint32_t *corners = e->side->chain.corners[triangle];
+    const csg_tree *tree = &e->other->tree;
+    double same = 0.5 * e->pair->precision, bound;
+    for (int k = 0; k < 3; k++)
+        if (csg_piece_is_within(&piece, &tree->triangles[e->side->nearest[corners[k]]], same))
+            return same;
+    if (!is_verdict_known(e->search) &&
+        csg_triangle_is_covered(tree, e->other->across, piece.corners, piece.hint,
+                                target_of(e, e->search->lower), &bound))
+        return bound;
+    return bound_by_one(e, &piece, corners);
 }
 
 static bool bound_run(void *user, uint32_t worker, size_t index)
@@ -102,9 +125,8 @@ static bool bound_run(void *user, uint32_t worker, size_t index)
     engine *e = user;
     size_t end =
         (index + 1) * RUN < e->side->chain.count ? (index + 1) * RUN : e->side->chain.count;
-    double enough = 0.5 * e->pair->precision;
     for (size_t t = index * RUN; t < end; t++)
-        e->bounds[t] = nextafterf((float)bound_of(e, t, enough), INFINITY);
+        e->bounds[t] = nextafterf((float)bound_of(e, t), INFINITY);
     return !csg_diff_is_cancelled(e->pair);
 }
 
@@ -124,10 +146,8 @@ static uint64_t key_of(float bound, size_t triangle)
 
 static void extend_differing(engine *e, size_t triangle)
 {
-    for (int k = 0; k < 3; k++) {
-        csg_vec3 p = csg_diff_corner(e->side, triangle, k);
-        e->search->differing = csg_box_hull(e->search->differing, (csg_box){p, p});
-    }
+    for (int k = 0; k < 3; k++)
+        csg_box_extend(&e->search->differing, csg_diff_corner(e->side, triangle, k));
 }
 
 /* Lists what is above the target; the rest is settled. */
@@ -375,8 +395,7 @@ static csgm_status run_batches(engine *e)
     search->is_refined = true;
     csg_diff_take(e->pair, search->from == 0 ? 0.45 : 0.8);
     for (size_t size = FIRST_BATCH; status == CSGM_OK; size = size < LAST_BATCH ? 2 * size : size) {
-        bool is_settled = search->verdict_only && search->lower > search->tolerance;
-        if (is_settled || e->cuts > CUTS_MOST) {
+        if (is_verdict_known(search) || e->cuts > CUTS_MOST) {
             search->is_refined = e->next_key == e->key_count && !e->waiting_count;
             break;
         }
@@ -406,34 +425,39 @@ static void start_from_points(engine *e)
     e->search->is_found = true;
 }
 
+static csgm_status search_maximum(engine *e)
+{
+    csg_diff_side *side = &e->pair->sides[e->search->from];
+    csg_pool *pool = e->pair->context->pool;
+    size_t run_count = (side->chain.count + RUN - 1) / RUN;
+    e->bounds = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e->bounds);
+    e->keys = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e->keys);
+    if (!e->bounds || !e->keys)
+        return csg_context_no_memory(e->pair->context);
+    csg_diff_take(e->pair, 0.05);
+    if (!csg_pool_run(pool, run_count, bound_run, report_items, e))
+        return CSGM_CANCELLED;
+    list_keys(e);
+    return run_batches(e);
+}
+
 csgm_status csg_diff_find_maximum(csg_diff_pair *pair, csg_diff_maximum *search)
 {
     csg_memory *memory = &pair->context->memory;
-    csg_diff_side *side = &pair->sides[search->from];
-    csg_arena_mark mark = csg_arena_get_mark(&side->arena);
     engine e = {.pair = pair,
                 .search = search,
-                .side = side,
+                .side = &pair->sides[search->from],
                 .other = &pair->sides[1 - search->from],
                 .cuts_of_item = CUTS_OF_ITEM};
-    e.bounds = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e.bounds);
-    e.keys = csg_arena_alloc(&side->arena, side->chain.count * sizeof *e.keys);
-    csgm_status status = CSGM_OK;
     search->upper = 0;
-    csg_diff_take(pair, 0.05);
-    if (!e.bounds || !e.keys)
-        status = csg_context_no_memory(pair->context);
-    else if (!csg_pool_run(pair->context->pool, (side->chain.count + RUN - 1) / RUN, bound_run,
-                           report_items, &e))
-        status = CSGM_CANCELLED;
-    if (status == CSGM_OK) {
-        start_from_points(&e);
-        list_keys(&e);
-        status = run_batches(&e);
-    }
+    start_from_points(&e);
+    if (!is_verdict_known(search) && !csg_diff_pair_link(pair))
+        return csg_context_no_memory(pair->context);
+    csg_arena_mark mark = csg_arena_get_mark(&pair->sides[search->from].arena);
+    csgm_status status = search_maximum(&e);
     search->upper = fmax(search->upper, search->lower);
     csg_memory_release(memory, e.items, e.item_room * sizeof *e.items);
     csg_memory_release(memory, e.waiting, e.waiting_room * sizeof *e.waiting);
-    csg_arena_release_to(&side->arena, mark);
+    csg_arena_release_to(&pair->sides[search->from].arena, mark);
     return status;
 }

@@ -13,7 +13,6 @@
 #include "base/trace.h"
 #include "mesh/inspect.h"
 #include "mesh/view.h"
-#include "shape/polyhedra/piece.h"
 
 /* ---- coordinates ---------------------------------------------------------------------------- */
 
@@ -146,10 +145,8 @@ static bool list_points(csg_diff_pair *pair, csg_diff_side *side)
 static csg_box box_of_side(const csg_diff_pair *pair, const csg_diff_side *side)
 {
     csg_box box = csg_box_empty();
-    for (size_t i = 0; i < side->point_count; i++) {
-        csg_vec3 p = pair->points[side->points[i]];
-        box = csg_box_hull(box, (csg_box){p, p});
-    }
+    for (size_t i = 0; i < side->point_count; i++)
+        csg_box_extend(&box, pair->points[side->points[i]]);
     return box;
 }
 
@@ -351,6 +348,21 @@ csgm_status csg_diff_pair_prepare(csg_diff_pair *pair, bool with_trees)
     return p.status[0] == CSGM_ERR_LIMIT || p.status[1] == CSGM_ERR_LIMIT
                ? CSGM_ERR_LIMIT
                : csg_context_no_memory(pair->context);
+}
+
+static bool link_side(void *user, uint32_t worker, size_t index)
+{
+    (void)worker;
+    csg_diff_side *side = &((csg_diff_pair *)user)->sides[index];
+    if (side->across)
+        return true;
+    side->across = csg_arena_alloc(&side->arena, side->tree.count * sizeof *side->across);
+    return side->across && csg_across_make(&side->arena, &side->chain, &side->tree, side->across);
+}
+
+bool csg_diff_pair_link(csg_diff_pair *pair)
+{
+    return csg_pool_run(pair->context->pool, 2, link_side, NULL, pair);
 }
 
 bool csg_diff_is_inside(const csg_diff_side *side, csg_vec3 p)

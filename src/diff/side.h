@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/context.h"
-#include "shape/polyhedra/tree.h"
+#include "shape/polyhedra/cover.h"
 
 /* A mesh may be looked at with another axis up. */
 typedef enum csg_diff_turn {
@@ -29,7 +29,8 @@ typedef struct csg_diff_side {
     uint32_t *points;    /* the ones that this side's triangles use, in order of first use */
     size_t point_count;
     csg_tree tree;
-    double slack; /* frame units: distances to this mesh are computed so exactly */
+    csg_across *across; /* per triangle of the tree, by csg_diff_pair_link */
+    double slack;       /* frame units: distances to this mesh are computed so exactly */
     csgm_mesh_check check;
     bool is_closed;
     /* By csg_diff_measure_points: of each of `points` to the other mesh, indexed by point. */
@@ -65,6 +66,8 @@ csgm_status csg_diff_pair_make(csg_diff_pair *pair, csgm_context *context, const
                                const csgm_mesh_view *b, bool may_turn_b);
 /* Trees and figures; only the figures when `with_trees` is false. */
 csgm_status csg_diff_pair_prepare(csg_diff_pair *pair, bool with_trees);
+/* Who is across each edge, of both sides, which have trees; once. False: out of memory. */
+bool csg_diff_pair_link(csg_diff_pair *pair);
 void csg_diff_pair_release(csg_diff_pair *pair);
 
 csg_vec3 csg_diff_turned(csg_diff_turn turn, csg_vec3 p);

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The nearest triangle of a tree: the least of all of them, and the same one wherever the search
- * begins; for points beside, within and far from small, large and thin meshes.
+ * begins; for points beside, within and far from small, large and thin meshes. To the bit, whoever
+ * searches: all triangles, the tree, a list of its parts, points in lanes, where many are as near.
  */
 #include "shape/polyhedra/tree.h"
+#include "shape/shape_kernel.h"
 #include "shape/solid_support.h"
 
 static csg_vec3 on_lattice(csg_vec3 p)
@@ -73,8 +75,123 @@ static void test_nearest(void **state)
                        3 + csg_random_below(&random, 20));
 }
 
-int main(void)
+/* ---- ties ----------------------------------------------------------------------------------- */
+
+typedef struct tie_case {
+    solid_case c;
+    csg_tree tree;
+    csg_random random;
+} tie_case;
+
+static void begin_ties(tie_case *t, unsigned seed)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest)};
+    csg_arena scratch;
+    t->random.state = seed;
+    solid_begin(&t->c);
+    uint32_t n = 2 + csg_random_below(&t->random, 9);
+    double half = ldexp(0.9, -(int)csg_random_below(&t->random, 12));
+    csg_vec3 center = solid_random_point(&t->random, seed % 2 ? 0 : 1 - half);
+    if (seed % 3) {
+        /* flat or slender, some of them */
+        csg_vec3 h = {half, ldexp(half, -(int)csg_random_below(&t->random, 25) * (seed % 5 == 0)),
+                      ldexp(half, -(int)csg_random_below(&t->random, 25) * (seed % 7 == 0))};
+        solid_add_fine_box(&t->c.triangles, csg_vec3_sub(center, h), csg_vec3_add(center, h), n);
+    } else {
+        solid_add_ball(&t->c.triangles, center, half, 2 * n, n + 1, 0);
+    }
+    for (size_t i = 0; i < t->c.triangles.point_count; i++)
+        t->c.triangles.points[i] = on_lattice(t->c.triangles.points[i]);
+    csg_arena_init(&scratch, &t->c.memory);
+    assert_true(csg_tree_make(&t->c.memory, &scratch, &t->c.triangles, &t->tree));
+    csg_arena_reset(&scratch);
+}
+
+/* A mean of some corners, so that several triangles are as near or nearly so; above or below one of
+ * them, sometimes by a few roundings. */
+static csg_vec3 point_between(tie_case *t)
+{
+    const csg_triangles *m = &t->c.triangles;
+    uint32_t count = 1 + csg_random_below(&t->random, 4);
+    csg_vec3 p = {0, 0, 0};
+    for (uint32_t i = 0; i < count; i++)
+        p = csg_vec3_add(p, m->points[csg_random_below(&t->random, (uint32_t)m->point_count)]);
+    p = csg_vec3_scale(p, 1.0 / count);
+    double *axis[3] = {&p.x, &p.y, &p.z};
+    int power = -4 - (int)csg_random_below(&t->random, 50);
+    *axis[csg_random_below(&t->random, 3)] += ldexp(csg_random_uniform(&t->random, -1, 1), power);
+    bool is_far = csg_random_below(&t->random, 8) == 0;
+    return csg_vec3_scale(p, is_far ? ldexp(1, (int)csg_random_below(&t->random, 40)) : 1);
+}
+
+static csg_triangle_hit nearest_of_all(const csg_tree *tree, csg_vec3 p)
+{
+    csg_triangle_hit best = {INFINITY, 0, 0};
+    for (uint32_t place = 0; place < tree->count; place++) {
+        double squared = csg_triangle_squared(&tree->triangles[place], p);
+        if (squared < best.squared)
+            best = (csg_triangle_hit){squared, place, 0};
+    }
+    return best;
+}
+
+static void assert_same(csg_triangle_hit found, csg_triangle_hit wanted)
+{
+    assert_true(found.squared == wanted.squared);
+    assert_int_equal(found.place, wanted.place);
+}
+
+/* A list of what is within reach of a cell around p, as blocks have one. */
+static void check_list(tie_case *t, csg_vec3 p, csg_triangle_hit wanted)
+{
+    enum { MOST = 8 };
+    static const double MORE = 0x1p-36;
+    double half = ldexp(1, -(int)csg_random_below(&t->random, 30));
+    csg_vec3 halves = {half, half, half}, away = solid_random_point(&t->random, half);
+    uint32_t items[MOST];
+    uint32_t count = csg_tree_narrow(&t->tree, NULL, 0, csg_vec3_add(p, away), halves,
+                                     sqrt(wanted.squared) + MORE, items, MOST);
+    csg_vec3 lanes[CSG_SHAPE_LANES];
+    csg_triangle_hit hits[CSG_SHAPE_LANES];
+    assert_true(count > 0);
+    assert_same(csg_tree_nearest_of(&t->tree, items, count, p, CSG_TREE_NO_HINT), wanted);
+    for (int l = 0; l < CSG_SHAPE_LANES; l++)
+        lanes[l] = csg_vec3_add(p, solid_random_point(&t->random, l ? 0.1 * half : 0));
+    csg_shape_kernel_scalar.nearest_triangles(&t->tree, items, count, lanes, CSG_SHAPE_LANES,
+                                              CSG_TREE_NO_HINT, hits);
+    assert_same(hits[0], wanted);
+}
+
+static void check_ties(unsigned seed)
+{
+    enum { POINTS = 60 };
+    tie_case t;
+    begin_ties(&t, seed);
+    for (int i = 0; i < POINTS; i++) {
+        csg_vec3 p = point_between(&t);
+        csg_triangle_hit wanted = nearest_of_all(&t.tree, p);
+        uint32_t hint = csg_random_below(&t.random, (uint32_t)t.tree.count);
+        assert_same(csg_tree_nearest(&t.tree, p, hint), wanted);
+        check_list(&t, p, wanted);
+    }
+    csg_tree_release(&t.tree);
+    csg_triangles_release(&t.c.triangles);
+}
+
+static unsigned first_seed = 1, last_seed = 200;
+
+static void test_ties(void **state)
+{
+    for (unsigned seed = first_seed; seed <= last_seed; seed++)
+        check_ties(seed);
+}
+
+/* Optional: the first seed of ties and the last. */
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest), cmocka_unit_test(test_ties)};
+    if (argc == 3) {
+        first_seed = (unsigned)strtoul(argv[1], NULL, 10);
+        last_seed = (unsigned)strtoul(argv[2], NULL, 10);
+    }
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,15 +29,8 @@ static uint32_t spread(uint32_t step)
 static csg_box box_around(const csg_vec3 *at, size_t count)
 {
     csg_box box = {at[0], at[0]};
-    for (size_t i = 1; i < count; i++) {
-        csg_vec3 p = at[i];
-        box.min.x = p.x < box.min.x ? p.x : box.min.x;
-        box.min.y = p.y < box.min.y ? p.y : box.min.y;
-        box.min.z = p.z < box.min.z ? p.z : box.min.z;
-        box.max.x = p.x > box.max.x ? p.x : box.max.x;
-        box.max.y = p.y > box.max.y ? p.y : box.max.y;
-        box.max.z = p.z > box.max.z ? p.z : box.max.z;
-    }
+    for (size_t i = 1; i < count; i++)
+        csg_box_extend(&box, at[i]);
     return box;
 }
 

@@ -22,24 +22,25 @@ double csg_piece_radius(const csg_piece *piece, csg_vec3 center)
     return sqrt(most);
 }
 
-double csg_triangle_distance(const csg_tree_triangle *triangle, csg_vec3 p)
-{
-    bool in_face;
-    csg_vec3 away = csg_vec3_sub(p, csg_triangle_foot(triangle, p, &in_face));
-    return csg_vec3_norm(away);
-}
-
 double csg_piece_bound(const csg_piece *piece, const csg_tree_triangle *triangle, uint32_t *corner)
 {
     double most = -1;
     for (uint32_t i = 0; i < piece->count; i++) {
-        double d = csg_triangle_distance(triangle, piece->corners[i]);
-        if (d > most) {
-            most = d;
+        double squared = csg_triangle_squared(triangle, piece->corners[i]);
+        if (squared > most) {
+            most = squared;
             *corner = i;
         }
     }
-    return most;
+    return sqrt(most);
+}
+
+bool csg_piece_is_within(const csg_piece *piece, const csg_tree_triangle *triangle, double enough)
+{
+    for (uint32_t i = 0; i < piece->count; i++)
+        if (!(csg_triangle_squared(triangle, piece->corners[i]) <= enough * enough))
+            return false;
+    return true;
 }
 
 static void add_corner(csg_piece *piece, csg_vec3 p)

@@ -22,7 +22,8 @@ double csg_piece_radius(const csg_piece *piece, csg_vec3 center);
 /* The distance to a triangle is a convex function of the point, so its maximum over the piece is at
  * a corner: an upper bound of the distance to the whole mesh. */
 double csg_piece_bound(const csg_piece *piece, const csg_tree_triangle *triangle, uint32_t *corner);
-double csg_triangle_distance(const csg_tree_triangle *triangle, csg_vec3 p);
+/* Whether that is at most `enough`. */
+bool csg_piece_is_within(const csg_piece *piece, const csg_tree_triangle *triangle, double enough);
 
 /* How exactly distances to a tree's triangles are computed, frame units. */
 double csg_piece_slack(const csg_tree *tree);

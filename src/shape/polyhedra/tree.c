@@ -335,9 +335,9 @@ static void place_triangles(builder *b, const csg_triangles *chain)
         *t = (csg_tree_triangle){
             .a = p, .ab = csg_vec3_sub(q, p), .ac = csg_vec3_sub(r, p), .index = b->items[i].index};
         t->is_needle = is_needle(t);
-        tree->box = csg_box_hull(tree->box, (csg_box){p, p});
-        tree->box = csg_box_hull(tree->box, (csg_box){q, q});
-        tree->box = csg_box_hull(tree->box, (csg_box){r, r});
+        csg_box_extend(&tree->box, p);
+        csg_box_extend(&tree->box, q);
+        csg_box_extend(&tree->box, r);
     }
 }
 

@@ -84,7 +84,9 @@ typedef enum csg_triangle_part {
 
 /* The point of a triangle that is nearest to p. */
 csg_vec3 csg_triangle_foot(const csg_tree_triangle *triangle, csg_vec3 p, bool *in_face);
-/* The same, and where in the triangle it is. */
+/* The squared distance to it. */
+double csg_triangle_squared(const csg_tree_triangle *triangle, csg_vec3 p);
+/* The foot, and where in the triangle it is. */
 csg_vec3 csg_triangle_locate(const csg_tree_triangle *triangle, csg_vec3 p,
                              csg_triangle_part *part);
 

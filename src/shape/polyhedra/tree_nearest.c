@@ -59,6 +59,11 @@ static inline double triangle_squared(const csg_tree_triangle *t, csg_vec3 p)
     return from_edges(t, ap, u, v, w).squared;
 }
 
+double csg_triangle_squared(const csg_tree_triangle *t, csg_vec3 p)
+{
+    return triangle_squared(t, p);
+}
+
 csg_vec3 csg_triangle_locate(const csg_tree_triangle *t, csg_vec3 p, csg_triangle_part *part)
 {
     csg_vec3 ap = csg_vec3_sub(p, t->a), normal = csg_vec3_cross(t->ab, t->ac);

@@ -62,7 +62,7 @@ csg_box csg_triangles_box(const csg_triangles *triangles)
 {
     csg_box box = csg_box_empty();
     for (size_t i = 0; i < triangles->point_count; i++)
-        box = csg_box_hull(box, (csg_box){triangles->points[i], triangles->points[i]});
+        csg_box_extend(&box, triangles->points[i]);
     return box;
 }
 
