@@ -138,23 +138,36 @@ static inline double grain(double term, double size)
 static void total_of_many(const float *weights, size_t stride, uint32_t arity, float w,
                           const float *active, float *total, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        double sum = 0;
-        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
-            sum += grain((double)weights[k * stride + i], (double)w);
-        total[i] = active[i] > 2 ? (float)sum : total[i];
-    }
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)weights[k * stride + i], (double)w);
+    for (size_t i = 0; i < count; i++)
+        total[i] = active[i] > 2 ? (float)sum[i] : total[i];
 }
 
+/* The same of a channel. */
 static void mean_of_many(const float *shares, size_t stride, uint32_t arity, const float *in,
-                         size_t in_stride, const float *active, float *mean, size_t count)
+                         size_t in_stride, float *mean, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        double sum = 0;
-        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
-            sum += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
-        mean[i] = (float)sum;
-    }
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
+    for (size_t i = 0; i < count; i++)
+        mean[i] = (float)sum[i];
+}
+
+static int is_any_above(const float *array, float most, size_t count)
+{
+    float found = 0;
+    for (size_t i = 0; i < count; i++)
+        found = array[i] > most ? 1.0f : found;
+    return found > 0;
 }
 
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
@@ -166,7 +179,6 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
     float *top = work, *excess = work + s.stride, *total = work + 2 * s.stride;
     float *active = total + s.stride, *mean = active + s.stride;
     float *gaps = slot(s, first);
-    const int many = node->arity > 2;
     round_solve(gaps, s.stride, node->arity, is_union, w, count, top, excess, total);
     for (size_t i = 0; i < count; i++)
         total[i] = active[i] = 0;
@@ -177,6 +189,7 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
             total[i] += weight;
             active[i] += weight > 0 ? 1.0f : 0;
         }
+    const int many = is_any_above(active, 2, count);
     if (many)
         total_of_many(gaps, s.stride, node->arity, w, active, total, count);
     /* Shares first, so that a lone active operand has exactly 1. */
@@ -186,8 +199,7 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
     for (int c = 0; c < channels; c++) {
         float *out = channel(s, depth, first, c);
         if (many)
-            mean_of_many(gaps, s.stride, node->arity, out, MOST_CHANNELS * s.stride, active, mean,
-                         count);
+            mean_of_many(gaps, s.stride, node->arity, out, MOST_CHANNELS * s.stride, mean, count);
         for (size_t i = 0; i < count; i++)
             out[i] = gaps[i] * out[i];
         for (uint32_t k = 1; k < node->arity; k++) {
