@@ -22,6 +22,13 @@ typedef struct csg_points {
 #ifdef CSG_KERNEL
 #define CSG_CONCATENATE_(a, b) a##b
 #define CSG_CONCATENATE(a, b) CSG_CONCATENATE_(a, b)
+
+/* Points that batches are rounded up to in this build: its vectors hold so many, or fewer. */
+#ifdef __AVX512F__
+enum { CSG_VECTOR = CSG_LANES };
+#else
+enum { CSG_VECTOR = CSG_OCTANTS };
+#endif
 #endif
 
 #endif

@@ -84,7 +84,7 @@ static void walk_values(const csg_tape *tape, csg_points p, kernel_slots s, uint
     size_t top = 0;
     float *work = slot(s, depth);
     csg_warped_points warped;
-    warped.warp = 0;
+    csg_warped_points_begin(&warped);
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
@@ -138,23 +138,36 @@ static inline double grain(double term, double size)
 static void total_of_many(const float *weights, size_t stride, uint32_t arity, float w,
                           const float *active, float *total, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        double sum = 0;
-        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
-            sum += grain((double)weights[k * stride + i], (double)w);
-        total[i] = active[i] > 2 ? (float)sum : total[i];
-    }
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)weights[k * stride + i], (double)w);
+    for (size_t i = 0; i < count; i++)
+        total[i] = active[i] > 2 ? (float)sum[i] : total[i];
 }
 
+/* The same of a channel. */
 static void mean_of_many(const float *shares, size_t stride, uint32_t arity, const float *in,
-                         size_t in_stride, const float *active, float *mean, size_t count)
+                         size_t in_stride, float *mean, size_t count)
 {
-    for (size_t i = 0; i < count; i++) {
-        double sum = 0;
-        for (uint32_t k = 0; k < arity && active[i] > 2; k++)
-            sum += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
-        mean[i] = (float)sum;
-    }
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
+    for (size_t i = 0; i < count; i++)
+        mean[i] = (float)sum[i];
+}
+
+static int is_any_above(const float *array, float most, size_t count)
+{
+    float found = 0;
+    for (size_t i = 0; i < count; i++)
+        found = array[i] > most ? 1.0f : found;
+    return found > 0;
 }
 
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
@@ -166,7 +179,6 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
     float *top = work, *excess = work + s.stride, *total = work + 2 * s.stride;
     float *active = total + s.stride, *mean = active + s.stride;
     float *gaps = slot(s, first);
-    const int many = node->arity > 2;
     round_solve(gaps, s.stride, node->arity, is_union, w, count, top, excess, total);
     for (size_t i = 0; i < count; i++)
         total[i] = active[i] = 0;
@@ -177,6 +189,7 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
             total[i] += weight;
             active[i] += weight > 0 ? 1.0f : 0;
         }
+    const int many = is_any_above(active, 2, count);
     if (many)
         total_of_many(gaps, s.stride, node->arity, w, active, total, count);
     /* Shares first, so that a lone active operand has exactly 1. */
@@ -186,8 +199,7 @@ static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node,
     for (int c = 0; c < channels; c++) {
         float *out = channel(s, depth, first, c);
         if (many)
-            mean_of_many(gaps, s.stride, node->arity, out, MOST_CHANNELS * s.stride, active, mean,
-                         count);
+            mean_of_many(gaps, s.stride, node->arity, out, MOST_CHANNELS * s.stride, mean, count);
         for (size_t i = 0; i < count; i++)
             out[i] = gaps[i] * out[i];
         for (uint32_t k = 1; k < node->arity; k++) {
@@ -428,7 +440,7 @@ __attribute__((always_inline)) static inline void walk_mixed(const csg_tape *tap
     size_t top = 0;
     float *work = slot(s, depth * (1 + MOST_CHANNELS));
     csg_warped_points warped;
-    warped.warp = 0;
+    csg_warped_points_begin(&warped);
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {
@@ -472,15 +484,9 @@ static int turns(const csg_tape *tape)
 
 /* ---- batches -------------------------------------------------------------------------------- */
 
-static size_t batch_size(uint32_t depth, size_t scratch_floats)
-{
-    size_t fits = scratch_floats / csg_kernel_arrays(depth) / CSG_LANES * CSG_LANES;
-    return fits < CSG_BATCH ? fits : CSG_BATCH;
-}
-
 static size_t padded(size_t count)
 {
-    return (count + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
+    return (count + CSG_VECTOR - 1) / CSG_VECTOR * CSG_VECTOR;
 }
 
 static size_t least(size_t a, size_t b)
@@ -488,22 +494,34 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+static size_t batch_size(uint32_t depth, size_t scratch_floats)
+{
+    size_t fits = scratch_floats / csg_kernel_arrays(depth) / CSG_LANES * CSG_LANES;
+    return least(fits, CSG_BATCH);
+}
+
+/* Arrays no longer than the points need: those of a few points then lie in the innermost cache side
+ * by side, where arrays that are a power of two apart would drive each other out of it. */
+static kernel_slots slots_for(size_t count, uint32_t depth, float *scratch, size_t scratch_floats)
+{
+    return (kernel_slots){scratch, least(batch_size(depth, scratch_floats), padded(count))};
+}
+
 static void values(const csg_tape *tape, const float *x, const float *y, const float *z,
                    size_t count, float *out, float *scratch, size_t scratch_floats)
 {
     if (tape->count == 1) { /* most blocks: straight into the result */
         csg_warped_points warped;
-        warped.warp = 0;
+        csg_warped_points_begin(&warped);
         CSG_THIS_LEAF_KERNEL.values(tape, tape->nodes, (csg_points){x, y, z, padded(count)}, out,
                                     &warped);
         return;
     }
     uint32_t depth = csg_tape_depth(tape);
-    size_t batch = batch_size(depth, scratch_floats);
-    kernel_slots s = {scratch, batch};
+    kernel_slots s = slots_for(count, depth, scratch, scratch_floats);
     int turning = tape->turns && turns(tape);
-    for (size_t i = 0; i < count; i += batch) {
-        size_t n = least(batch, count - i);
+    for (size_t i = 0; i < count; i += s.stride) {
+        size_t n = least(s.stride, count - i);
         csg_points p = {x + i, y + i, z + i, padded(n)};
         if (turning)
             walk_gradients(tape, p, s, depth);
@@ -536,7 +554,7 @@ static void values_and_gradients(const csg_tape *tape, const float *x, const flo
 {
     float *out[GRADIENT_CHANNELS] = {gx, gy, gz};
     uint32_t depth = csg_tape_depth(tape);
-    kernel_slots s = {scratch, batch_size(depth, scratch_floats)};
+    kernel_slots s = slots_for(count, depth, scratch, scratch_floats);
     mixed(tape, x, y, z, count, f, out, GRADIENTS_ONLY, s, depth, NULL);
 }
 
@@ -570,7 +588,7 @@ static void colors(const csg_tape *tape, const float *x, const float *y, const f
                    size_t count, float *const rgba[4], float *scratch, size_t scratch_floats)
 {
     uint32_t depth = csg_tape_depth(tape);
-    kernel_slots s = {scratch, batch_size(depth, scratch_floats)};
+    kernel_slots s = slots_for(count, depth, scratch, scratch_floats);
     if (!tape->turns || !turns(tape)) {
         mixed(tape, x, y, z, count, NULL, rgba, COLORS_ONLY, s, depth, NULL);
         return;
@@ -619,7 +637,7 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     float *work = slot(highs, depth);
     size_t top = 0;
     csg_warped_points warped;
-    warped.warp = 0;
+    csg_warped_points_begin(&warped);
     for (uint32_t n = 0; n < tape->count; n++) {
         const csg_tape_node *node = &tape->nodes[n];
         if (csg_op_is_leaf(node->op)) {

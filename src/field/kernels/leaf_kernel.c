@@ -238,7 +238,8 @@ static void warped_gradients(const csg_tape *tape, const csg_tape_node *node, cs
                              float *out, float *gx, float *gy, float *gz, csg_warped_points *warped)
 {
     own_gradients(tape, node, below_warp(tape, node, p, warped), out, gx, gy, gz);
-    CSG_THIS_WARP_KERNEL.gradients(tape, node->warp, p.x, p.y, p.z, p.count, gx, gy, gz);
+    CSG_THIS_WARP_KERNEL.gradients(tape, node->warp, p.x, p.y, p.z, p.count, gx, gy, gz,
+                                   &warped->slopes);
 }
 
 /* Walks for gradients go by batches: p.count <= CSG_BATCH. */

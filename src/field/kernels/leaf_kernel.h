@@ -5,14 +5,22 @@
 #ifndef CSG_FIELD_LEAF_KERNEL_H
 #define CSG_FIELD_LEAF_KERNEL_H
 
-#include "field/kernels/batch.h"
+#include "field/kernels/warp_kernel.h"
 
 /* A walk's points as they are below a warp: leaves below one warp stand together, and all but the
  * first find them here. */
 typedef struct csg_warped_points {
     uint32_t warp; /* as csg_tape_node.warp; 0: none are here */
     float x[CSG_BATCH], y[CSG_BATCH], z[CSG_BATCH];
+    csg_warp_slopes slopes; /* of that warp or another one, for gradients */
 } csg_warped_points;
+
+/* Of a walk that begins; the rest need not be filled. */
+static inline void csg_warped_points_begin(csg_warped_points *warped)
+{
+    warped->warp = 0;
+    warped->slopes.warp = 0;
+}
 
 typedef struct csg_leaf_kernel {
     /* `warped`: of these points, or none; with p.count <= CSG_BATCH kept for other leaves. */

@@ -52,21 +52,28 @@ static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is
     float *restrict rest = work, *restrict sum = work + arity * stride,
                     *restrict squares = sum + stride, *restrict next = squares + stride,
                     *restrict taken = next + stride;
-    for (uint32_t k = 0; k < arity; k++)
-        memcpy(rest + k * stride, f + k * stride, count * sizeof(float));
+    uint32_t left = 0; /* operands that are active somewhere: gaps of others never reach w */
+    for (uint32_t k = 0; k < arity; k++) {
+        const float *restrict v = f + k * stride;
+        float reaches = 0;
+        for (size_t i = 0; i < count; i++)
+            reaches = w - v[i] > 0 ? 1.0f : reaches;
+        if (reaches > 0)
+            memcpy(rest + left++ * stride, v, count * sizeof(float));
+    }
     for (size_t i = 0; i < count; i++)
         sum[i] = squares[i] = excess[i] = 0;
     /* The active prefix: operands by growing gap, until one does not reach G. A lane that has
      * stopped stays: its next gap is no smaller. */
-    for (uint32_t m = 1; m <= arity; m++) {
+    for (uint32_t m = 1; m <= left; m++) {
         for (size_t i = 0; i < count; i++) {
             next[i] = INFINITY;
             taken[i] = 0;
         }
-        for (uint32_t k = 0; k < arity; k++)
+        for (uint32_t k = 0; k < left; k++)
             for (size_t i = 0; i < count; i++)
                 next[i] = smaller(next[i], rest[k * stride + i]);
-        for (uint32_t k = 0; k < arity; k++)
+        for (uint32_t k = 0; k < left; k++)
             for (size_t i = 0; i < count; i++) {
                 int hit = (rest[k * stride + i] == next[i]) & (taken[i] == 0);
                 rest[k * stride + i] = hit ? INFINITY : rest[k * stride + i];

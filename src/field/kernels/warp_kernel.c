@@ -135,21 +135,18 @@ static inline warped bend_at(const float *own, point p)
             z[i] = at.z;                                                                           \
         }                                                                                          \
     }                                                                                              \
-    static void name##_gradients(const csg_tape_warp *warp, const float *restrict x,               \
-                                 const float *restrict y, const float *restrict z, size_t count,   \
-                                 float *restrict gx, float *restrict gy, float *restrict gz)       \
+    static void name##_slopes(const csg_tape_warp *warp, const float *restrict x,                  \
+                              const float *restrict y, const float *restrict z, size_t count,      \
+                              float(*restrict column)[CSG_BATCH])                                  \
     {                                                                                              \
         float own[CSG_WARP_PARAMETERS], m[12];                                                     \
         memcpy(own, warp->own, sizeof own);                                                        \
         memcpy(m, warp->frame, sizeof m);                                                          \
         for (size_t i = 0; i < count; i++) {                                                       \
             warped w = name##_at(own, row_point(m, x[i], y[i], z[i]));                             \
-            float a = w.dx.x * gx[i] + w.dx.y * gy[i] + w.dx.z * gz[i];                            \
-            float b = w.dy.x * gx[i] + w.dy.y * gy[i] + w.dy.z * gz[i];                            \
-            float c = w.dz.x * gx[i] + w.dz.y * gy[i] + w.dz.z * gz[i];                            \
-            gx[i] = m[0] * a + m[3] * b + m[6] * c;                                                \
-            gy[i] = m[1] * a + m[4] * b + m[7] * c;                                                \
-            gz[i] = m[2] * a + m[5] * b + m[8] * c;                                                \
+            column[0][i] = w.dx.x, column[1][i] = w.dx.y, column[2][i] = w.dx.z;                   \
+            column[3][i] = w.dy.x, column[4][i] = w.dy.y, column[5][i] = w.dy.z;                   \
+            column[6][i] = w.dz.x, column[7][i] = w.dz.y, column[8][i] = w.dz.z;                   \
         }                                                                                          \
     }
 #define CSG_WARP(NAME, name, ...) LOOPS(name)
@@ -166,15 +163,31 @@ static void warp_points(const csg_tape_warp *warp, float *x, float *y, float *z,
     }
 }
 
-static void warp_gradients(const csg_tape_warp *warp, const float *x, const float *y,
-                           const float *z, size_t count, float *gx, float *gy, float *gz)
+static void warp_slopes(const csg_tape_warp *warp, const float *x, const float *y, const float *z,
+                        size_t count, float (*column)[CSG_BATCH])
 {
     switch (warp->kind) {
 #define CSG_WARP(NAME, name, ...)                                                                  \
     case CSG_WARP_##NAME:                                                                          \
-        name##_gradients(warp, x, y, z, count, gx, gy, gz);                                        \
+        name##_slopes(warp, x, y, z, count, column);                                               \
         break;
 #include "scene/primitives/warps.def"
+    }
+}
+
+/* By the chain rule. */
+static void lead_out(const csg_tape_warp *warp, const float (*restrict column)[CSG_BATCH],
+                     size_t count, float *restrict gx, float *restrict gy, float *restrict gz)
+{
+    float m[12];
+    memcpy(m, warp->frame, sizeof m);
+    for (size_t i = 0; i < count; i++) {
+        float a = column[0][i] * gx[i] + column[1][i] * gy[i] + column[2][i] * gz[i];
+        float b = column[3][i] * gx[i] + column[4][i] * gy[i] + column[5][i] * gz[i];
+        float c = column[6][i] * gx[i] + column[7][i] * gy[i] + column[8][i] * gz[i];
+        gx[i] = m[0] * a + m[3] * b + m[6] * c;
+        gy[i] = m[1] * a + m[4] * b + m[7] * c;
+        gz[i] = m[2] * a + m[5] * b + m[8] * c;
     }
 }
 
@@ -201,18 +214,26 @@ static void points_of_way(const csg_tape *tape, uint32_t warp, float *x, float *
 
 /* From the innermost warp outwards, each at the points as they come to it. */
 static void gradients_of_way(const csg_tape *tape, uint32_t warp, const float *x, const float *y,
-                             const float *z, size_t count, float *gx, float *gy, float *gz)
+                             const float *z, size_t count, float *gx, float *gy, float *gz,
+                             csg_warp_slopes *kept)
 {
     const csg_tape_warp *way[CSG_MOST_WARPS];
     float px[CSG_BATCH], py[CSG_BATCH], pz[CSG_BATCH];
-    for (int i = way_to(tape, warp, way) - 1; i >= 0; i--) {
+    int length = way_to(tape, warp, way);
+    if (kept->warp == warp) {
+        lead_out(way[0], (const float(*)[CSG_BATCH])kept->column, count, gx, gy, gz);
+        return;
+    }
+    for (int i = length - 1; i >= 0; i--) {
         memcpy(px, x, count * sizeof *px);
         memcpy(py, y, count * sizeof *py);
         memcpy(pz, z, count * sizeof *pz);
         for (int k = 0; k < i; k++)
             warp_points(way[k], px, py, pz, count);
-        warp_gradients(way[i], px, py, pz, count, gx, gy, gz);
+        warp_slopes(way[i], px, py, pz, count, kept->column);
+        lead_out(way[i], (const float(*)[CSG_BATCH])kept->column, count, gx, gy, gz);
     }
+    kept->warp = length == 1 ? warp : 0;
 }
 
 const csg_warp_kernel CSG_THIS_WARP_KERNEL = {

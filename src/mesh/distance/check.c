@@ -110,8 +110,9 @@ static double margin_at(const proof *p, settler *s, places *of)
 {
     float f[2 * MOST_PLACES];
     double least = INFINITY;
-    for (size_t n = of->count; n % CSG_LANES; n++)
-        of->at[0][n] = of->at[1][n] = of->at[2][n] = 0;
+    for (size_t n = of->count; n % CSG_LANES; n++) /* shapes are asked for copies once */
+        for (int axis = 0; axis < 3; axis++)
+            of->at[axis][n] = of->at[axis][0];
     p->remesh->probe.marching->kernel->values(&s->tape, of->at[0], of->at[1], of->at[2], of->count,
                                               f, s->scratch, p->scratch_floats);
     for (size_t i = 0; i < of->count; i++) {
@@ -189,7 +190,7 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
 {
     enum { RINGS = 4, WAYS = 26, ROOM = WAYS + CSG_LANES };
     csg_vec3 other = csg_vec3_cross(normal, side);
-    float at[3][ROOM] = {{0}}, f[ROOM] = {0};
+    float at[3][ROOM], f[ROOM];
     bool inside = false, outside = false;
     double reach = p->error - d.radius;
     for (int ring = 0; ring < RINGS && !(inside && outside); ring++, reach /= 4) {
@@ -206,6 +207,9 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
             csg_vec3 q = csg_vec3_add(d.center, csg_vec3_scale(off, reach));
             at[0][i] = (float)q.x, at[1][i] = (float)q.y, at[2][i] = (float)q.z;
         }
+        for (int i = WAYS; i % CSG_LANES; i++)
+            for (int axis = 0; axis < 3; axis++)
+                at[axis][i] = at[axis][0];
         p->remesh->probe.marching->kernel->values(&s->tape, at[0], at[1], at[2], WAYS, f,
                                                   s->scratch, p->scratch_floats);
         for (int i = 0; i < WAYS; i++) {

@@ -74,20 +74,12 @@ static bool is_in(const csg_triangle_box *box, csg_vec3 low, csg_vec3 high)
            (double)box->min[2] > low.z && (double)box->max[2] < high.z;
 }
 
-/* It is asked for a few times, and would take as much as a triangle's corners if it were kept. */
+/* It would take as much as a triangle's corners if it were kept. */
 static csg_triangle_box box_of(const cutting *c, uint32_t triangle)
 {
     csg_vec3 v[3];
     csg_triangle_tree_corners(&c->d->remesh->tree, triangle, v);
     return csg_triangle_box_of(v);
-}
-
-static bool meets(const cutting *c, uint32_t triangle, csg_vec3 low, csg_vec3 high)
-{
-    csg_triangle_box box = box_of(c, triangle);
-    return (double)box.max[0] >= low.x && (double)box.min[0] <= high.x &&
-           (double)box.max[1] >= low.y && (double)box.min[1] <= high.y &&
-           (double)box.max[2] >= low.z && (double)box.min[2] <= high.z;
 }
 
 static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, csg_vec3 high)
@@ -117,33 +109,76 @@ static bool add_region(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3
     return true;
 }
 
-/* The triangles of ids that meet the cube, cut into eighths while they are many. */
-static bool cut(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, double side,
+/* Where the lower and the upper half of a cube begin and end along each axis. */
+typedef struct halves {
+    double low[3][2], high[3][2];
+} halves;
+
+static halves halves_of(csg_vec3 low, double half)
+{
+    const double from[3] = {low.x, low.y, low.z};
+    halves h;
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < 2; i++) {
+            h.low[axis][i] = from[axis] + i * half;
+            h.high[axis][i] = h.low[axis][i] + half;
+        }
+    return h;
+}
+
+/* A bit for each of a cube's eighths that the box meets. */
+static uint8_t eighths_met(const halves *h, const csg_triangle_box *box)
+{
+    static const uint8_t beside[3][2] = {{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}};
+    unsigned met = 0xFF;
+    for (int axis = 0; axis < 3; axis++) {
+        bool lower =
+            (double)box->max[axis] >= h->low[axis][0] && (double)box->min[axis] <= h->high[axis][0];
+        bool upper =
+            (double)box->max[axis] >= h->low[axis][1] && (double)box->min[axis] <= h->high[axis][1];
+        met &= (lower ? beside[axis][0] : 0u) | (upper ? beside[axis][1] : 0u);
+    }
+    return (uint8_t)met;
+}
+
+/* Cuts the cube that these triangles meet into eighths, and those that many of them meet again.
+ * half: the side of an eighth. Boxes are asked for once for all eight. */
+static bool cut(cutting *c, const uint32_t *ids, uint32_t count, csg_vec3 low, double half,
                 int depth)
 {
-    csg_vec3 high = csg_vec3_add(low, csg_vec3_make(side, side, side));
+    const halves h = halves_of(low, half);
     csg_arena_mark mark = csg_arena_get_mark(&c->arena);
-    uint32_t meeting = 0, n = 0;
-    for (uint32_t i = 0; i < count; i++)
-        meeting += meets(c, ids[i], low, high);
-    uint32_t *own = csg_arena_alloc(&c->arena, meeting * sizeof *own);
-    bool done = own != NULL;
-    for (uint32_t i = 0; done && n < meeting; i++)
-        if (meets(c, ids[i], low, high))
-            own[n++] = ids[i];
-    if (done && n && (n <= MOST_OF_REGION || depth == DEEPEST))
-        done = add_region(c, own, n, low, high);
-    else if (done && n)
-        for (int o = 0; o < 8 && done; o++) {
-            csg_vec3 step = {o & 1 ? side / 2 : 0, o & 2 ? side / 2 : 0, o & 4 ? side / 2 : 0};
-            done = cut(c, own, n, csg_vec3_add(low, step), side / 2, depth + 1);
-        }
+    uint32_t meeting[CSG_OCTANTS] = {0};
+    uint8_t *met = csg_arena_alloc(&c->arena, count);
+    bool done = met != NULL;
+    for (uint32_t i = 0; done && i < count; i++) {
+        csg_triangle_box box = box_of(c, ids[i]);
+        met[i] = eighths_met(&h, &box);
+        for (int o = 0; o < CSG_OCTANTS; o++)
+            meeting[o] += met[i] >> o & 1;
+    }
+    for (int o = 0; o < CSG_OCTANTS && done; o++) {
+        const int x = o & 1, y = o >> 1 & 1, z = o >> 2;
+        csg_vec3 from = {h.low[0][x], h.low[1][y], h.low[2][z]};
+        csg_arena_mark before = csg_arena_get_mark(&c->arena);
+        uint32_t n = 0, *own = csg_arena_alloc(&c->arena, meeting[o] * sizeof *own);
+        done = own != NULL;
+        for (uint32_t i = 0; done && n < meeting[o]; i++)
+            if (met[i] >> o & 1)
+                own[n++] = ids[i];
+        if (done && n && (n <= MOST_OF_REGION || depth == DEEPEST))
+            done = add_region(c, own, n, from,
+                              csg_vec3_make(h.high[0][x], h.high[1][y], h.high[2][z]));
+        else if (done && n)
+            done = cut(c, own, n, from, half / 2, depth + 1);
+        csg_arena_release_to(&c->arena, before);
+    }
     csg_arena_release_to(&c->arena, mark);
     return done;
 }
 
-/* The first cubes: places and sizes do not depend on how large the mesh is, but for a factor of
- * two. */
+/* The first cubes are eighths of one that holds all: places and sizes do not depend on how large
+ * the mesh is, but for a factor of two. */
 static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, const csg_triangle_box *all,
                     int round)
 {
@@ -154,20 +189,11 @@ static bool cut_all(cutting *c, uint32_t *ids, uint32_t count, const csg_triangl
     for (int k = 0; k < 3; k++)
         extent = fmax(extent, (double)all->max[k] - (double)all->min[k]);
     side = ldexp(1, (int)ceil(csg_log2(fmax(extent, 1e-30))));
-    int last[3];
     for (int k = 0; k < 3; k++) {
         double shift = side * (0.29 + round / 3.0) - middle[k], begin = (double)all->min[k] - shift;
         from[k] = floor(begin / side) * side + shift;
-        last[k] = (double)all->max[k] >= from[k] + side ? 1 : 0;
     }
-    bool done = true;
-    for (int x = 0; x <= last[0]; x++)
-        for (int y = 0; y <= last[1]; y++)
-            for (int z = 0; z <= last[2] && done; z++) {
-                csg_vec3 low = {from[0] + x * side, from[1] + y * side, from[2] + z * side};
-                done = cut(c, ids, count, low, side, 0);
-            }
-    return done;
+    return cut(c, ids, count, csg_vec3_make(from[0], from[1], from[2]), side, 0);
 }
 
 /* ---- whose vertex is it ------------------------------------------------------------------------
