@@ -195,6 +195,19 @@ static inline bool csg_fillet_has_apart(const csg_tape *tape, const csg_tape_nod
     return tape->parameters[fillet->parameters + CSG_FILLET_HAS_APART] > 0;
 }
 
+/* Do two of its operands not meet? Of each the join_parameters, which are where its row begins;
+ * planes_once: CSG_FILLET_PLANES_ONCE. */
+static inline bool csg_fillet_rows_apart(const float *parameters, uint32_t one, uint32_t other,
+                                         uint32_t planes_once)
+{
+    const float *row = parameters + one + planes_once;
+    float number = parameters[other + planes_once];
+    for (uint32_t i = 0; i < (uint32_t)row[1]; i++)
+        if (row[2 + i] == number)
+            return true;
+    return false;
+}
+
 /* Of a CSG_OP_SHAPE. */
 static inline const csg_shape *csg_tape_shape(const csg_tape *tape, const csg_tape_node *node)
 {

@@ -12,6 +12,7 @@
 
 enum {
     ASK_EVERY = 256,    /* cubes, whether to stop */
+    SIZES = 96,         /* of what cubes leave open, each a root of two below the one before */
     LEVELS = 8,         /* from the root to the frontier, and one */
     LEDGERS_MOST = 128, /* MB of ledgers between two rounds */
     LEDGERS_SHARE = 8   /* and what part of all memory, where that has a limit */
@@ -23,6 +24,7 @@ typedef struct tally {
     uint64_t cubes;          /* in it */
     uint64_t latest, looked; /* at how many of them the latest round has looked; all rounds */
     bool is_full;            /* it had its share of cubes: it stays as it is */
+    double opens[SIZES];     /* what cubes of each size leave open, that of the first share first */
 } tally;
 
 typedef struct rounds {
@@ -50,6 +52,24 @@ typedef struct stroll {
     csg_ledger *ledger; /* of this round */
 } stroll;
 
+/* At most the first share times the root of two to the power of -size. */
+static int size_of(const rounds *r, double open)
+{
+    static const double ROOT = 0.70710678118654752;
+    int exponent;
+    double part = frexp(open / r->job->share, &exponent);
+    int size = (part < ROOT ? 1 : 0) - 2 * exponent;
+    return !(open > 0) || size >= SIZES ? SIZES - 1 : size < 0 ? 0 : size;
+}
+
+/* Of one that stays as it is. */
+static void count_open(const rounds *r, tally *t, double open)
+{
+    t->worst = fmax(t->worst, open);
+    if (isfinite(open))
+        t->opens[size_of(r, open)] += open;
+}
+
 /* What a cube comes to that the round before has left as it is. True: it is enough. */
 static bool take_known(stroll *s, const csg_measure_cube *q, double open, const void *known,
                        void *account)
@@ -57,7 +77,7 @@ static bool take_known(stroll *s, const csg_measure_cube *q, double open, const 
     const rounds *r = s->r;
     if (open > r->share && !s->t->is_full && q->level < CSG_MEASURE_DEEPEST)
         return false;
-    s->t->worst = fmax(s->t->worst, open);
+    count_open(r, s->t, open);
     memcpy(account, known, r->job->account_bytes);
     csg_ledger_add_leaf(s->ledger, &r->walk->context->memory, open, known, r->job->account_bytes);
     return true;
@@ -75,7 +95,7 @@ static bool settle(stroll *s, csg_measure_cube *q, void *account)
     double open = r->job->settle(r->job->user, r->walk, s->worker, q, account);
     if (open > r->share && !is_last)
         return false;
-    t->worst = fmax(t->worst, open);
+    count_open(r, t, open);
     csg_ledger_add_leaf(s->ledger, &r->walk->context->memory, open, account, r->job->account_bytes);
     return true;
 }
@@ -273,27 +293,55 @@ static double conclude(rounds *r, const csg_rounds_counts *counts)
  * slower where less is known of it; at first it is taken for the least of these that is usual. */
 typedef struct course {
     double share, open, falls; /* of the round before; open: 0, there is none */
+    /* What of the cubes that are divided is left, and by which share of all that was open this
+     * round was to have no more than that of it; 0: it was not chosen so. */
+    double left, divided;
 } course;
 
 static void take_course(course *c, double share, double open)
 {
-    static const double LEAST = 0.4, MOST = 0.75;
+    static const double LEAST = 0.4, MOST = 0.75, LEAST_LEFT = 0.1, MOST_LEFT = 0.75;
     if (c->open > 0 && share < c->share && open < c->open)
         c->falls = fmin(fmax(csg_log(open / c->open) / csg_log(share / c->share), LEAST), MOST);
+    if (c->divided > 0)
+        c->left = fmin(fmax(1 - (1 - open / c->open) / c->divided, LEAST_LEFT), MOST_LEFT);
     c->share = share;
     c->open = open;
+    c->divided = 0;
+}
+
+/* Where a little less is wanted, no more cubes need to be divided than those that leave most open:
+ * the largest share by which as much as is too much goes. 0: it is far less than this one. */
+static double find_share(const rounds *r, course *c, double wanted)
+{
+    static const double FAR = 0x1p-3, ROOT = 0.70710678118654752;
+    double opens[SIZES] = {0}, all = 0, divided = 0, share = r->job->share;
+    for (size_t i = 0; i < r->walk->count; i++)
+        for (int n = 0; n < SIZES; n++)
+            opens[n] += r->tallies[i].opens[n];
+    for (int n = 0; n < SIZES; n++)
+        all += opens[n];
+    for (int n = 0; n < SIZES && share > FAR * r->share; n++, share *= ROOT) {
+        if (share < r->share && (1 - c->left) * divided >= (1 - wanted) * all) {
+            c->divided = divided / all;
+            return share;
+        }
+        divided += opens[n];
+    }
+    return 0;
 }
 
 /* The next share. Cubes become more by its power of 2/3 at most, and those that there are already
  * are known. False: so many are not to be had. */
-static bool choose_share(rounds *r, const course *c, double ratio, uint64_t latest, uint64_t left)
+static bool choose_share(rounds *r, course *c, double ratio, uint64_t latest, uint64_t left)
 {
-    static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-6, MARGIN = 0.8;
+    static const double LEAST_STEP = 0.5, LARGEST_STEP = 0x1p-6, MARGIN = 1.4, CLOSE = 0.95;
     double step = fmax(fmin(csg_pow(MARGIN * ratio, 1 / c->falls), LEAST_STEP), LARGEST_STEP);
     double more = 1 + (double)left / (double)latest, affordable = more * sqrt(more);
     if (!(affordable > 1 / LEAST_STEP))
         return false;
-    r->share *= fmax(step, 1 / affordable);
+    double share = find_share(r, c, CLOSE * ratio);
+    r->share = fmax(share > 0 ? share : step * r->share, r->share / affordable);
     return true;
 }
 
@@ -303,7 +351,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
     enum { VAIN = 2 };                 /* rounds that are not: rounding is what is left */
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
-    course so_far = {.falls = 0.5};
+    course so_far = {.falls = 0.5, .left = 0.15};
     double best = 0;
     int vain = 0;
     for (bool more = true; more && status == CSGM_OK;) {

@@ -189,6 +189,23 @@ static void joins_hold(void **state)
     assert_true(seen.volumes > 130 * test_times && seen.areas > 30 * test_times);
 }
 
+/* Operands of a fillet that do not meet have no say in how others blend. */
+static void fillets_with_operands_apart_have_models(void **state)
+{
+    static const double CENTRE[3] = {2, 0, 1}, HALF = 1.0 / 64;
+    const csg_blend fillet = {CSG_BLEND_FILLET, 0.5, false};
+    csg_taylor_pieces f;
+    mesh_case m;
+    mesh_case_begin(&m, 1);
+    csg_node_id ids[] = {make_box(&m, 4, 4, 1), moved(&m, make_box(&m, 4, 4, 1), 0, 0, 9),
+                         make_cylinder(&m, 2, 9)};
+    mesh_case_compile(&m, csg_build_operator(&m.builder, CSG_NODE_UNION, fillet, ids, 3, NOWHERE));
+    const csg_vec3 o = m.field->center;
+    const double c[3] = {CENTRE[0] + 0.2 - o.x, CENTRE[1] - o.y, CENTRE[2] + 0.2 - o.z};
+    assert_true(csg_tape_taylor_pieces(&m.field->tape, c, csg_enclosure_radius(HALF), &f));
+    mesh_case_end(&m);
+}
+
 /* A cube where the nearer face of a box changes, 0.1 inside, and a plane is at different angles to
  * them, that far beyond: the number of its models, 0: none. */
 static int count_models(csg_blend blend, double beyond)
@@ -225,6 +242,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(joins_hold),
         cmocka_unit_test(blending_fillets_of_creases_have_no_models),
         cmocka_unit_test(columns_of_several_pieces_hold),
+        cmocka_unit_test(fillets_with_operands_apart_have_models),
     };
     test_take_search(argc, argv);
     return cmocka_run_group_tests(tests, NULL, NULL);

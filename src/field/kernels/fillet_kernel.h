@@ -80,12 +80,7 @@ static double fillet_inside(const void *user, const csg_fillet_operand *operands
 
 static bool fillet_are_apart(const fillet_arrays *a, uint32_t one, uint32_t other)
 {
-    const float *row = a->parameters + a->numbers[one] + a->own_number;
-    float number = a->parameters[a->numbers[other] + a->own_number];
-    for (uint32_t i = 0; i < (uint32_t)row[1]; i++)
-        if (row[2 + i] == number)
-            return true;
-    return false;
+    return csg_fillet_rows_apart(a->parameters, a->numbers[one], a->numbers[other], a->own_number);
 }
 
 static bool fillet_apart(const void *user, const csg_fillet_operand *a, const csg_fillet_operand *b)

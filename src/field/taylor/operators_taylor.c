@@ -506,6 +506,24 @@ static meeting find_meeting(csg_taylor_walk *w, const csg_taylor_operand *a,
     return way < 0 ? UNKNOWN : (meeting)way;
 }
 
+/* Solids that do not meet do not blend. */
+static bool do_meet(const csg_taylor_walk *w, const csg_tape_node *node,
+                    const csg_taylor_operand *a, const csg_taylor_operand *b)
+{
+    const csg_tape *tape = w->tape;
+    float planes_once = tape->parameters[node->parameters + CSG_FILLET_PLANES_ONCE];
+    return !csg_fillet_has_apart(tape, node) ||
+           !csg_fillet_rows_apart(tape->parameters, tape->nodes[a->node].join_parameters,
+                                  tape->nodes[b->node].join_parameters, (uint32_t)planes_once);
+}
+
+static bool is_larger(const csg_taylor_walk *w, const csg_taylor_operand *a,
+                      const csg_taylor_operand *b, double turn)
+{
+    csg_taylor over = csg_taylor_sum(&a->f, -1, &b->f);
+    return turn * over.value > csg_taylor_reach(&over, w->radius);
+}
+
 /* Where a plane ends the fillet of two it must be above both, or one of them decides again. */
 static bool blend_pair(const csg_taylor_walk *w, const csg_tape_node *node,
                        const csg_taylor_operand *of, const uint32_t pair[2], const csg_taylor *d,
@@ -545,9 +563,11 @@ bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool 
         if (!(turn * x.value - csg_taylor_reach(&x, w->radius) > 2 * r))
             return false;
     }
-    meeting how = count > 1 ? find_meeting(w, a, &of[order[1]], r, turn, &d, &more) : FIRST;
-    if (how != FIRST && csg_fillet_has_apart(w->tape, node)) /* one that blends here may not */
-        return false;
+    meeting how = FIRST;
+    if (count > 1 && do_meet(w, node, a, &of[order[1]]))
+        how = find_meeting(w, a, &of[order[1]], r, turn, &d, &more);
+    else if (count > 1) /* the larger one, with a crease between them */
+        how = is_larger(w, a, &of[order[1]], turn) ? FIRST : UNKNOWN;
     if (how == UNKNOWN || (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, &out)))
         return false;
     of[0] = how == SECOND ? of[order[1]] : *a;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/geometry.h"
 #include "field/taylor/taylor_walk.h"
 #include "scene/operators/blend.h"
 #include "scene/operators/blend_kinds.h"
@@ -52,6 +53,28 @@ static void find_ways(csg_taylor_walk *w, uint32_t index)
 /* ---- operators of two --------------------------------------------------------------------------
  */
 
+/* How far the gradients of two that differ by this are apart. */
+static double turn_between(const csg_taylor_walk *w, const csg_taylor *d)
+{
+    return csg_norm3(d->slope) + csg_taylor_stray(d, w->radius);
+}
+
+/* So little that columns of both (measure/graph_field.h) tell more than planes that meet in a
+ * crease. */
+static bool are_tangent(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *d)
+{
+    static const double MOST = 0.25; /* of the gradient */
+    return turn_between(w, d) < MOST * csg_norm3(a->slope);
+}
+
+/* Two whose polynomials differ by less than what both are off: in no smaller ball would they be
+ * told apart, as where one face has been computed in two ways. */
+static bool are_same(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *d)
+{
+    double r = w->radius, off = d->error + d->quartic * r * r * r * r;
+    return fabs(d->value) + csg_taylor_reach(d, r) <= 2 * off && are_tangent(w, a, d);
+}
+
 /* Which of two decides: 0, 1, or -1, it is not the same everywhere and may not be left open. turn:
  * 1 of a union, -1 of an intersection. Where only the sign matters an operand that is outside of a
  * union decides nowhere. */
@@ -62,6 +85,11 @@ static int decider(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_o
     double apart = csg_taylor_walk_apart(w, &d);
     if (isfinite(apart)) {
         csg_taylor_walk_add_apart(w, &a->f, apart);
+        return 0;
+    }
+    if (are_same(w, &a->f, &d)) {
+        a->f.error += fabs(d.value) + csg_taylor_reach(&d, w->radius);
+        a->f.turned += turn_between(w, &d);
         return 0;
     }
     if (csg_taylor_reach(&d, w->radius) < fabs(d.value))
@@ -143,12 +171,15 @@ static bool join_smoothly(csg_taylor_walk *w, const csg_tape_node *node, csg_tay
     return blend_two(w, node, &first, &b->f, turn, &a->f);
 }
 
-/* One of two that each are the larger one somewhere. */
+/* One of two that each are the larger one somewhere; where the sign alone matters none, if they
+ * meet in a crease. */
 static bool decide(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_operand *b,
-                   double turn)
+                   double turn, bool signs)
 {
     static const bool BOTH[2] = {true, true};
     csg_taylor over = csg_taylor_sum(&a->f, -1, &b->f);
+    if (signs && !are_tangent(w, &a->f, &over))
+        return false;
     int which = csg_taylor_walk_choose(w, BOTH, 2);
     if (which < 0)
         return false;
@@ -173,7 +204,7 @@ static bool join_siblings(csg_taylor_walk *w, uint32_t index)
         int which = decider(w, a, b, turn, signs);
         if (which == 1)
             *a = *b;
-        return which >= 0 || (!signs && decide(w, a, b, turn));
+        return which >= 0 || decide(w, a, b, turn, signs);
     }
     return (node->join_blend == CSG_BLEND_PARABOLA || node->join_blend == CSG_BLEND_HYPERBOLA) &&
            join_smoothly(w, node, a, b, turn);
