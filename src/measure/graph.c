@@ -264,6 +264,7 @@ static void find_quarter(const csg_taylor_pieces *faces, double half, double who
         const csg_taylor_piece *of = &faces->of[i];
         out->of[i].f = moved(&of->f, to, whole);
         out->of[i].condition_count = of->condition_count;
+        out->of[i].is_partial = of->is_partial;
         for (int n = 0; n < of->condition_count; n++)
             out->of[i].conditions[n] = moved(&of->conditions[n], to, whole);
     }
@@ -305,6 +306,7 @@ bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side,
         const csg_taylor_piece *of = &f->of[i];
         faces.of[i].f = on_face(&of->f, side * half, axis);
         faces.of[i].condition_count = of->condition_count;
+        faces.of[i].is_partial = of->is_partial;
         for (int n = 0; n < of->condition_count; n++)
             faces.of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
     }

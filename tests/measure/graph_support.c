@@ -36,7 +36,7 @@ double graph_turn_at(const csg_taylor *f, const double x[3])
 
 int graph_is_there(const csg_taylor_piece *piece, const double x[3])
 {
-    int all = piece->condition_count < CSG_TAYLOR_CONDITIONS; /* more would not have been kept */
+    int all = !piece->is_partial;
     for (int n = 0; n < piece->condition_count; n++) {
         const csg_taylor *g = &piece->conditions[n];
         double value = graph_polynomial_at(g, x), room = graph_room_at(g, x);

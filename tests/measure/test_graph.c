@@ -450,6 +450,7 @@ static bool find_of_polynomial(const void *user, const double c[3], double half,
     out->count = 1;
     out->of[0].f = csg_taylor_moved(user, c);
     out->of[0].condition_count = 0;
+    out->of[0].is_partial = false;
     return true;
 }
 

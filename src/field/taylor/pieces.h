@@ -9,10 +9,12 @@
 
 enum { CSG_TAYLOR_PIECES = 16, CSG_TAYLOR_CONDITIONS = 6 };
 
-/* The field, wherever none of the conditions is negative. */
+/* The field, wherever none of the conditions is negative; is_partial: there are more of them than
+ * there was room for, and it may be another one there, too. */
 typedef struct csg_taylor_piece {
     csg_taylor f, conditions[CSG_TAYLOR_CONDITIONS];
     int condition_count;
+    bool is_partial;
 } csg_taylor_piece;
 
 /* At each point of the ball the field is one of these. */

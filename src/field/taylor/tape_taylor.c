@@ -270,6 +270,7 @@ static bool walk(csg_taylor_walk *w)
     w->top = 0;
     w->decisions = 0;
     w->piece->condition_count = 0;
+    w->piece->is_partial = false;
     for (uint32_t i = 0; i < w->tape->count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;

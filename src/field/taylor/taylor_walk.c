@@ -145,8 +145,10 @@ int csg_taylor_walk_choose(csg_taylor_walk *w, const bool *possible, int count)
 void csg_taylor_walk_require(csg_taylor_walk *w, const csg_taylor *g, double off)
 {
     csg_taylor_piece *p = w->piece;
-    if (p->condition_count == CSG_TAYLOR_CONDITIONS)
+    if (p->condition_count == CSG_TAYLOR_CONDITIONS) {
+        p->is_partial = true;
         return;
+    }
     p->conditions[p->condition_count] = *g;
     p->conditions[p->condition_count++].error += off;
 }
