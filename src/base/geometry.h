@@ -80,6 +80,17 @@ csg_box csg_box_all(void); /* the whole of space */
 bool csg_box_is_empty(csg_box box);
 bool csg_box_is_finite(csg_box box); /* false for the empty box too */
 csg_box csg_box_hull(csg_box a, csg_box b);
+/* csg_box_hull with a point, without calls of C's library: for millions of points. The box may be
+ * empty, with its sides at infinity. */
+static inline void csg_box_extend(csg_box *box, csg_vec3 p)
+{
+    box->min.x = p.x < box->min.x ? p.x : box->min.x;
+    box->min.y = p.y < box->min.y ? p.y : box->min.y;
+    box->min.z = p.z < box->min.z ? p.z : box->min.z;
+    box->max.x = p.x > box->max.x ? p.x : box->max.x;
+    box->max.y = p.y > box->max.y ? p.y : box->max.y;
+    box->max.z = p.z > box->max.z ? p.z : box->max.z;
+}
 csg_box csg_box_intersect(csg_box a, csg_box b);
 csg_box csg_box_grow(csg_box box, double by); /* empty stays empty; by >= 0, may be infinite */
 csg_vec3 csg_box_center(csg_box box);

@@ -517,10 +517,10 @@ static bool do_meet(const csg_taylor_walk *w, const csg_tape_node *node,
                                   tape->nodes[b->node].join_parameters, (uint32_t)planes_once);
 }
 
-static bool is_larger(const csg_taylor_walk *w, const csg_taylor_operand *a,
-                      const csg_taylor_operand *b, double turn)
+static bool is_larger(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *b,
+                      double turn)
 {
-    csg_taylor over = csg_taylor_sum(&a->f, -1, &b->f);
+    csg_taylor over = csg_taylor_sum(a, -1, b);
     return turn * over.value > csg_taylor_reach(&over, w->radius);
 }
 
@@ -532,11 +532,9 @@ static bool blend_pair(const csg_taylor_walk *w, const csg_tape_node *node,
     if (!fillet_two(w, &of[pair[0]].f, &of[pair[1]].f, d, r, turn, out))
         return false;
     int ended = find_end(w, node, of, pair, turn, out);
-    for (int i = 0; i < 2 && ended > 0; i++) {
-        csg_taylor over = csg_taylor_sum(out, -1, &of[pair[i]].f);
-        if (!(turn * over.value > csg_taylor_reach(&over, w->radius)))
+    for (int i = 0; i < 2 && ended > 0; i++)
+        if (!is_larger(w, out, &of[pair[i]].f, turn))
             return false;
-    }
     return ended >= 0;
 }
 
@@ -567,7 +565,7 @@ bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool 
     if (count > 1 && do_meet(w, node, a, &of[order[1]]))
         how = find_meeting(w, a, &of[order[1]], r, turn, &d, &more);
     else if (count > 1) /* the larger one, with a crease between them */
-        how = is_larger(w, a, &of[order[1]], turn) ? FIRST : UNKNOWN;
+        how = is_larger(w, &a->f, &of[order[1]].f, turn) ? FIRST : UNKNOWN;
     if (how == UNKNOWN || (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, &out)))
         return false;
     of[0] = how == SECOND ? of[order[1]] : *a;

@@ -19,8 +19,6 @@ static void see_all(csg_end_search *s)
     }
 }
 
-/* ---- all of them ------------------------------------------------------------------------------ */
-
 static double excess_of(const csg_end_search *s, const csg_node *node)
 {
     return csg_blend_is_fillet(node->blend) ? 0 : csg_scene_excess(s->scene, node);

@@ -52,7 +52,7 @@ static int compare_normals(const void *a, const void *b)
 
 static bool is_near(csg_vec3 a, csg_vec3 b)
 {
-    return csg_vec3_norm(csg_vec3_sub(a, b)) < 1e-9;
+    return csg_vec3_norm(csg_vec3_sub(a, b)) < CSG_AT_END;
 }
 
 static size_t keep_new(csg_end_search *s, size_t kept, size_t from, size_t to)

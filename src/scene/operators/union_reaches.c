@@ -37,6 +37,12 @@ double csg_box_reach(csg_box box, csg_vec3 n)
            side(n.z, box.min.z, box.max.z);
 }
 
+static csg_vec3 corner_of(csg_box box, int k)
+{
+    return csg_vec3_make(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
+                         k & 4 ? box.max.z : box.min.z);
+}
+
 /* An extrusion reaches as far as its figure and its height do together. */
 static void hand_down(csg_end_search *s, size_t i)
 {
@@ -192,9 +198,7 @@ static double cut_at(const csgm_scene *scene, csg_node_id i, csg_vec3 n, csg_box
         return INFINITY;
     box = box_beyond(box, n, at);
     for (int k = 0; k < 8; k++) {
-        csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
-                           k & 4 ? box.max.z : box.min.z};
-        if (p->distance(v, csg_affine_point(&to_own, corner)).value < -csg_near_end(0))
+        if (p->distance(v, csg_affine_point(&to_own, corner_of(box, k))).value < -csg_near_end(0))
             return INFINITY;
     }
     return at;
@@ -294,9 +298,8 @@ static double corner_off(const csg_end_search *s, size_t i, const csg_fillet_end
         !csg_affine_invert(s->to_own[i], &place))
         return INFINITY;
     for (int k = 0; k < 8; k++) {
-        csg_vec3 corner = {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y,
-                           k & 4 ? box.max.z : box.min.z};
-        most = fmax(most, csg_fillet_towards(axis, csg_affine_point(&place, corner), &away));
+        most = fmax(most,
+                    csg_fillet_towards(axis, csg_affine_point(&place, corner_of(box, k)), &away));
     }
     return most;
 }
@@ -346,12 +349,11 @@ void csg_end_find_off(csg_end_search *s, const csg_fillet_end *axis)
     hand_down_figures(s, axis);
     for (size_t at = s->seen_count; at-- > 1;) {
         csg_node_id i = s->seen[at];
-        csg_end_reach corner = {corner_off(s, i, axis), false}, known;
         if (csg_vec3_norm(s->normals[i]) > 0) {
             s->reaches[i] = bounded_reach(s, i);
             continue;
         }
-        known = node_off(s, i, axis);
+        csg_end_reach corner = {corner_off(s, i, axis), false}, known = node_off(s, i, axis);
         s->reaches[i] = known.at <= corner.at ? known : corner;
     }
 }

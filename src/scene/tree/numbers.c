@@ -136,12 +136,6 @@ static bool is_unended(const csg_node *node)
     return node->flags & CSG_FLAG_UNENDED;
 }
 
-/* A fillet does by itself; what is above it asks where. */
-static bool ends_flush(const csg_node *node)
-{
-    return is_unended(node) || csg_node_is_fillet(node);
-}
-
 /* As good as an infinite cylinder: one that is longer than all operands. */
 static csg_node_id build_cylinder(const search *s, const csg_node *node, const csg_fillet_end *end,
                                   double radius)
@@ -175,7 +169,8 @@ static csg_node_id build_end(const search *s, const csg_node *node, const csg_fi
                                  : csg_build_transform(s->builder, &place, made, node->where);
 }
 
-/* The builder's node becomes the union within its ends. */
+/* The builder's node becomes the union within its ends. A fillet ends there by itself: only who
+ * stands above it asks for them. */
 static bool take_ends(void *user, csg_node_id id, const csg_union_ends *ends)
 {
     const search *s = user;
@@ -242,7 +237,7 @@ csgm_status csg_numbers_end(csg_scene_builder *builder, const csgm_scene *scene,
                             const csg_node_id *origins)
 {
     search s = {.builder = builder, .scene = scene, .origins = origins};
-    csgm_status status = csg_union_ends_find(scene, ends_flush, take_ends, &s);
+    csgm_status status = csg_union_ends_find(scene, csg_node_ends_flush, take_ends, &s);
     return builder->status != CSGM_OK ? builder->status : status;
 }
 

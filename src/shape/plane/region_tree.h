@@ -43,7 +43,7 @@ typedef struct csg_segment_tree {
     size_t segment_capacity, node_capacity, cell_capacity;
     uint32_t cells_x, cells_y;
     double left, bottom, per_x, per_y; /* cells a length */
-    double room; /* added to squared distances of boxes: csg_segment_box_share */
+    double room; /* added to squared distances of boxes: CSG_SEGMENT_BOX_SHARE */
     csg_box box;
 } csg_segment_tree;
 

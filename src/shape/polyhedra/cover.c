@@ -10,8 +10,9 @@
 
 /* ---- who is across an edge ------------------------------------------------------------------ */
 
-/* Half-edges around a point that are looked through. In the middle of a fan there may be millions,
- * but its edges are found from their other ends. */
+/* The lists of edges.h know all half-edges of an edge, and take five times the memory. Here so many
+ * are looked through around a point: in the middle of a fan there may be millions, but its edges
+ * are found from their other ends. */
 enum { AROUND_MOST = 64 };
 
 typedef struct halves {

@@ -9,18 +9,6 @@
 #include "base/geometry.h"
 #include "base/memory.h"
 
-/* csg_box_hull with a point, without calls of C's library: for millions of points. The box may be
- * empty, with its sides at infinity. */
-static inline void csg_box_extend(csg_box *box, csg_vec3 p)
-{
-    box->min.x = p.x < box->min.x ? p.x : box->min.x;
-    box->min.y = p.y < box->min.y ? p.y : box->min.y;
-    box->min.z = p.z < box->min.z ? p.z : box->min.z;
-    box->max.x = p.x > box->max.x ? p.x : box->max.x;
-    box->max.y = p.y > box->max.y ? p.y : box->max.y;
-    box->max.z = p.z > box->max.z ? p.z : box->max.z;
-}
-
 typedef struct csg_triangles {
     csg_memory *memory;
     csg_vec3 *points;
