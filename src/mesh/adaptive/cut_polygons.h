@@ -21,10 +21,15 @@ typedef struct csg_cut_polygon {
     double distance;                   /* from the surface, as it was last cut */
 } csg_cut_polygon;
 
-/* Whether sheets that should meet in it do not: of a fan. */
-static inline bool csg_cut_has_failed(const csg_cut_polygon *p)
+/* Of the tolerance: where triangles are so near to the surface, creases between blunt sheets need
+ * not meet where they should: the fan has each of them as an edge up to its apex all the same. */
+#define CSG_BLUNT_NEAR 0.5
+
+/* Whether sheets that should meet in a fan, whose distance was found, do not. */
+static inline bool csg_cut_has_failed(const csg_cut_polygon *p, double tolerance)
 {
-    return p->kind == CSG_APEX_FAILED || p->polygon.is_torn;
+    return p->kind == CSG_APEX_FAILED || p->polygon.is_torn ||
+           (p->kind == CSG_APEX_BLUNT && p->distance > CSG_BLUNT_NEAR * tolerance);
 }
 
 int csg_cut_triangle_count(const csg_cut_polygon *piece);

@@ -16,8 +16,8 @@ static bool add_fan(csg_cell_loop *w, uint32_t worker, const csg_polygon *p, con
     csg_placed_vertex v;
     memset(&v, 0, sizeof v);
     memcpy(v.at, apex, sizeof v.at);
-    v.is_crease = kind == CSG_APEX_CREASE;
-    self->creases += kind == CSG_APEX_CREASE;
+    v.is_crease = kind == CSG_APEX_CREASE || kind == CSG_APEX_BLUNT;
+    self->creases += v.is_crease;
     self->smooth += kind == CSG_APEX_FAILED;
     uint32_t number = CSG_OWN_VERTEX | (uint32_t)(self->count - self->first);
     if (!csg_cells_add_vertex(w, worker, &v))

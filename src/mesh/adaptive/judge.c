@@ -499,7 +499,7 @@ static void cut_fans(brick_work *w)
     }
     csg_cuts_find_distances(&w->probe, fans, count, w->least);
     for (int i = 0; i < count; i++)
-        if ((csg_cut_has_failed(fans[i]) && !w->is_small) ||
+        if ((csg_cut_has_failed(fans[i], w->judge->tolerance) && !w->is_small) ||
             fans[i]->distance > w->judge->tolerance)
             w->bad |= 1u << fans[i]->cell;
 }

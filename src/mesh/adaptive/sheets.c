@@ -23,6 +23,8 @@ static const double LEAST_TURN = 0.035;
 static const double MARGIN = 0x1p-9, ZERO = 2e-3;
 static const double OFF[] = {0.25, 0.08, 0.02, 0.005, 0.001};
 enum { STEPS = sizeof OFF / sizeof *OFF };
+/* Cosine: gradients that differ from their mean by less than 30 degrees belong to blunt sheets. */
+static const double BLUNT_SHEETS = 0.866;
 /* Of two sheets that meet: sin^2 of 0.2 degrees. */
 static const double LEAST_SINE_SQUARE = 1e-5;
 
@@ -474,7 +476,7 @@ static void check(apex_way *a, csg_vec3 kept)
  * part of the tolerance. */
 static double reach_of(const csg_sheet_probe *p, const apex_way *a, double otherwise)
 {
-    bool would_fail = a->otherwise == CSG_APEX_FAILED && !a->search->polygon->is_torn;
+    bool would_fail = a->otherwise != CSG_APEX_SMOOTH && !a->search->polygon->is_torn;
     return would_fail ? fmax(p->near, otherwise) : otherwise;
 }
 
@@ -503,14 +505,15 @@ static void approach_meeting(const csg_sheet_probe *p, apex_way *a)
 static void set_out_to_meet(const csg_sheet_probe *p, apex_way *a, int creases)
 {
     const csg_polygon *polygon = a->search->polygon;
-    csg_vec3 sum = {0, 0, 0};
+    csg_vec3 sum = {0, 0, 0}, mean;
     for (int i = 0; i < polygon->count; i++)
         if (polygon->is_crease[i])
             sum = csg_vec3_add(sum, polygon->point[i].at);
     a->at = csg_vec3_scale(sum, 1.0 / creases);
     a->stage = MEETING;
-    if (is_sharp(polygon))
-        a->otherwise = CSG_APEX_FAILED;
+    if (is_sharp(polygon) && a->otherwise == CSG_APEX_SMOOTH)
+        a->otherwise =
+            least_cosine(polygon, &mean) < BLUNT_SHEETS ? CSG_APEX_FAILED : CSG_APEX_BLUNT;
     if (gather_sheets(polygon, creases, &a->sheets) &&
         meet(a->sheets.plane, a->sheets.count, &a->at))
         approach_meeting(p, a);

@@ -88,6 +88,7 @@ typedef struct csg_polygon {
 typedef enum csg_apex_kind {
     CSG_APEX_SMOOTH, /* on the surface, or near it */
     CSG_APEX_CREASE, /* where the sheets meet */
+    CSG_APEX_BLUNT,  /* as the next, but the sheets are nearly one */
     CSG_APEX_FAILED  /* sheets should meet, but not here: it is only near the surface */
 } csg_apex_kind;
 
