@@ -22,14 +22,16 @@ typedef struct csg_cut_polygon {
 } csg_cut_polygon;
 
 /* Of the tolerance: where triangles are so near to the surface, creases between blunt sheets need
- * not meet where they should: the fan has each of them as an edge up to its apex all the same. */
-#define CSG_BLUNT_NEAR 0.5
+ * not meet where they should, and what lies between two creases of a face may be too narrow to be
+ * seen: the fan has the creases as edges up to its apex all the same. */
+#define CSG_CREASES_NEAR 0.5
 
 /* Whether sheets that should meet in a fan, whose distance was found, do not. */
 static inline bool csg_cut_has_failed(const csg_cut_polygon *p, double tolerance)
 {
-    return p->kind == CSG_APEX_FAILED || p->polygon.is_torn ||
-           (p->kind == CSG_APEX_BLUNT && p->distance > CSG_BLUNT_NEAR * tolerance);
+    bool is_near = p->distance <= CSG_CREASES_NEAR * tolerance;
+    return p->kind == CSG_APEX_FAILED ||
+           (!is_near && (p->kind == CSG_APEX_BLUNT || p->polygon.is_torn));
 }
 
 int csg_cut_triangle_count(const csg_cut_polygon *piece);
