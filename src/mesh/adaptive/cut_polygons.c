@@ -8,9 +8,6 @@
 /* Points asked at once; of one piece there are fewer. */
 enum { MOST_OF_ONE = 4 * CSG_POLYGON_MOST, MOST = 4 * MOST_OF_ONE };
 
-/* Cosine between the normals of a triangle and of its sheet: below it, the triangle looks away. */
-static const double LOOKS_AWAY = 0.17;
-
 typedef struct points {
     float x[MOST + CSG_LANES], y[MOST + CSG_LANES], z[MOST + CSG_LANES], f[MOST + CSG_LANES];
     int count;
@@ -229,7 +226,7 @@ static bool add_points(points *q, const csg_cut_polygon *piece, double least_hei
         csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
         csg_vec3 longest = csg_vec3_sub(b, c);
         double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
-        if (height > least_height && -csg_gradients_cosine(cross, g) < LOOKS_AWAY)
+        if (height > least_height && csg_vec3_dot(cross, g) > 0)
             return false;
         add_point(q, csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3));
         add_point(q, csg_vec3_scale(csg_vec3_add(a, b), 0.5));
