@@ -67,13 +67,14 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
     csg_sheet_probe probe = csg_judge_probe(w->x->judge, w->x->bricks, s->brick, room, &tape);
     const double tolerance = w->x->judge->tolerance;
     csg_cuts_find_distances(&probe, fans, room->piece_count, tolerance);
+    csg_cuts_settle_near(fans, room->piece_count, tolerance);
     room->evaluations += probe.evaluations;
     const csg_bricks *b = w->x->bricks;
     double cell = csg_bricks_cell(b, s->brick->level) * b->lattice->cell_size;
     bool may_fail = csg_judge_may_fail(w->x->judge, cell);
     for (int i = 0; i < room->piece_count; i++)
         far |= (unsigned)(fans[i]->distance > w->x->farthest ||
-                          (csg_cut_has_failed(fans[i], tolerance) && !may_fail))
+                          (csg_cut_has_failed(fans[i]) && !may_fail))
                << fans[i]->cell;
     want_divided(w, s, far);
     return true;

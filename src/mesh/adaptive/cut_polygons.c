@@ -8,6 +8,9 @@
 /* Points asked at once; of one piece there are fewer. */
 enum { MOST_OF_ONE = 4 * CSG_POLYGON_MOST, MOST = 4 * MOST_OF_ONE };
 
+/* Of the tolerance: fans that are so near have their creases as edges, up to the apex at least. */
+static const double NEAR = 0.5;
+
 typedef struct points {
     float x[MOST + CSG_LANES], y[MOST + CSG_LANES], z[MOST + CSG_LANES], f[MOST + CSG_LANES];
     int count;
@@ -140,14 +143,6 @@ static bool looks_one_way(const csg_cut_polygon *piece)
     return true;
 }
 
-static int count_creases(const csg_polygon *p)
-{
-    int creases = 0;
-    for (int i = 0; i < p->count; i++)
-        creases += p->is_crease[i];
-    return creases;
-}
-
 /* Whether all gradients are near their mean: it is one sheet. */
 static bool is_one_sheet(const csg_polygon *p)
 {
@@ -181,7 +176,7 @@ bool csg_cut_without_apex(csg_cut_polygon *piece)
     if (!p->in_faces)
         return csg_cut_plain(piece);
     piece->is_fan = false;
-    int creases = count_creases(p);
+    int creases = csg_polygon_crease_count(p);
     if (creases ? creases == 1 || p->is_torn : !is_one_sheet(p))
         return false; /* a crease that ends in the cell does so in an apex */
     return p->count <= MOST_BETWEEN && choose_cut(piece) && joins_creases(piece) &&
@@ -284,6 +279,17 @@ void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pie
 {
     for (int done = 0; done < count;)
         done += find_some(probe, pieces + done, count - done, least_height);
+}
+
+void csg_cuts_settle_near(csg_cut_polygon *const *fans, int count, double tolerance)
+{
+    for (int i = 0; i < count; i++) {
+        if (!(fans[i]->distance <= NEAR * tolerance))
+            continue;
+        fans[i]->polygon.is_torn = false;
+        if (fans[i]->kind == CSG_APEX_FAILED)
+            fans[i]->kind = CSG_APEX_CREASE;
+    }
 }
 
 /* ---- apart -------------------------------------------------------------------------------------

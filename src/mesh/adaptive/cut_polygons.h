@@ -21,17 +21,10 @@ typedef struct csg_cut_polygon {
     double distance;                   /* from the surface, as it was last cut */
 } csg_cut_polygon;
 
-/* Of the tolerance: where triangles are so near to the surface, creases between blunt sheets need
- * not meet where they should, and what lies between two creases of a face may be too narrow to be
- * seen: the fan has the creases as edges up to its apex all the same. */
-#define CSG_CREASES_NEAR 0.5
-
-/* Whether sheets that should meet in a fan, whose distance was found, do not. */
-static inline bool csg_cut_has_failed(const csg_cut_polygon *p, double tolerance)
+/* Whether sheets that should meet in it do not: of a fan. */
+static inline bool csg_cut_has_failed(const csg_cut_polygon *p)
 {
-    bool is_near = p->distance <= CSG_CREASES_NEAR * tolerance;
-    return p->kind == CSG_APEX_FAILED ||
-           (!is_near && (p->kind == CSG_APEX_BLUNT || p->polygon.is_torn));
+    return p->kind == CSG_APEX_FAILED || p->polygon.is_torn;
 }
 
 int csg_cut_triangle_count(const csg_cut_polygon *piece);
@@ -51,6 +44,10 @@ bool csg_cut_without_apex(csg_cut_polygon *piece);
  * INFINITY: a triangle higher than `least_height` looks inwards. */
 void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pieces, int count,
                              double least_height);
+
+/* Fans, whose distances were found, that are so near to the surface that nobody sees where in them
+ * sheets meet, or what is between two: they count as fans in which all meet. */
+void csg_cuts_settle_near(csg_cut_polygon *const *fans, int count, double tolerance);
 
 /* Whether all triangles of one have the other on one side, by more than a margin: then they do not
  * meet. */

@@ -16,8 +16,8 @@ static bool add_fan(csg_cell_loop *w, uint32_t worker, const csg_polygon *p, con
     csg_placed_vertex v;
     memset(&v, 0, sizeof v);
     memcpy(v.at, apex, sizeof v.at);
-    v.is_crease = kind == CSG_APEX_CREASE || kind == CSG_APEX_BLUNT;
-    self->creases += v.is_crease;
+    v.is_crease = kind == CSG_APEX_CREASE;
+    self->creases += kind == CSG_APEX_CREASE;
     self->smooth += kind == CSG_APEX_FAILED;
     uint32_t number = CSG_OWN_VERTEX | (uint32_t)(self->count - self->first);
     if (!csg_cells_add_vertex(w, worker, &v))
@@ -28,11 +28,29 @@ static bool add_fan(csg_cell_loop *w, uint32_t worker, const csg_polygon *p, con
     return true;
 }
 
+/* Those whose sheets fail to meet, but near the surface. */
+static void settle_failed(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
+{
+    const csg_judge *judge = w->x->judge;
+    csg_judge_room *room = &w->x->judge->rooms[worker];
+    csg_cut_polygon *failed[CSG_JUDGED_MOST_APEXES];
+    int count = 0;
+    for (int i = 0; i < room->piece_count; i++)
+        if (csg_cut_has_failed(&room->pieces[i]))
+            failed[count++] = &room->pieces[i];
+    csg_tape tape;
+    csg_sheet_probe probe = csg_judge_probe(judge, w->x->bricks, s->brick, room, &tape);
+    csg_cuts_find_distances(&probe, failed, count, judge->tolerance);
+    csg_cuts_settle_near(failed, count, judge->tolerance);
+    room->evaluations += probe.evaluations;
+}
+
 /* Fans whose middles the judge has not seen, together. */
 static bool add_fans(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 {
     csg_judge_room *room = &w->x->judge->rooms[worker];
     csg_cells_find_apexes(w, worker, s);
+    settle_failed(w, worker, s);
     for (int i = 0; i < room->piece_count; i++) {
         const csg_cut_polygon *piece = &room->pieces[i];
         float apex[3];

@@ -498,8 +498,9 @@ static void cut_fans(brick_work *w)
         fans[i]->kind = searches[i].kind;
     }
     csg_cuts_find_distances(&w->probe, fans, count, w->least);
+    csg_cuts_settle_near(fans, count, w->judge->tolerance);
     for (int i = 0; i < count; i++)
-        if ((csg_cut_has_failed(fans[i], w->judge->tolerance) && !w->is_small) ||
+        if ((csg_cut_has_failed(fans[i]) && !w->is_small) ||
             fans[i]->distance > w->judge->tolerance)
             w->bad |= 1u << fans[i]->cell;
 }

@@ -23,8 +23,6 @@ static const double LEAST_TURN = 0.035;
 static const double MARGIN = 0x1p-9, ZERO = 2e-3;
 static const double OFF[] = {0.25, 0.08, 0.02, 0.005, 0.001};
 enum { STEPS = sizeof OFF / sizeof *OFF };
-/* Cosine: gradients that differ from their mean by less than 30 degrees belong to blunt sheets. */
-static const double BLUNT_SHEETS = 0.866;
 /* Of two sheets that meet: sin^2 of 0.2 degrees. */
 static const double LEAST_SINE_SQUARE = 1e-5;
 
@@ -367,12 +365,17 @@ void csg_sheets_meet_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int co
 /* ---- in a cell ---------------------------------------------------------------------------------
  */
 
-static csg_vec3 middle_of(const csg_polygon *polygon)
+/* Of all vertices, or of those on creases, if there are any. */
+static csg_vec3 middle_of(const csg_polygon *polygon, bool of_creases)
 {
     csg_vec3 sum = {0, 0, 0};
+    int count = 0;
     for (int i = 0; i < polygon->count; i++)
-        sum = csg_vec3_add(sum, polygon->point[i].at);
-    return csg_vec3_scale(sum, 1.0 / polygon->count);
+        if (!of_creases || polygon->is_crease[i]) {
+            sum = csg_vec3_add(sum, polygon->point[i].at);
+            count++;
+        }
+    return csg_vec3_scale(sum, 1.0 / count);
 }
 
 /* Runs of vertices between crease points. False: too many. */
@@ -456,14 +459,17 @@ typedef struct apex_way {
     csg_apex_kind otherwise; /* where there is no meeting */
 } apex_way;
 
-/* Onto the surface by Newton's steps from the middle, as far as they stay in the cell. */
+/* Onto the surface by Newton's steps from the middle, as far as they stay in the cell: from the
+ * middle of the creases, where there are several, so that the fan is near them. */
 static void land(apex_way *a)
 {
     const csg_cell_box *box = &a->search->box;
+    const csg_polygon *polygon = a->search->polygon;
+    bool creased = csg_polygon_crease_count(polygon) >= 2;
     a->stage = LANDING;
     a->step = 0;
     a->search->kind = a->otherwise;
-    a->at = keep_within(box, middle_of(a->search->polygon), MARGIN * box->cell);
+    a->at = keep_within(box, middle_of(polygon, creased), MARGIN * box->cell);
 }
 
 static void check(apex_way *a, csg_vec3 kept)
@@ -476,7 +482,7 @@ static void check(apex_way *a, csg_vec3 kept)
  * part of the tolerance. */
 static double reach_of(const csg_sheet_probe *p, const apex_way *a, double otherwise)
 {
-    bool would_fail = a->otherwise != CSG_APEX_SMOOTH && !a->search->polygon->is_torn;
+    bool would_fail = a->otherwise == CSG_APEX_FAILED && !a->search->polygon->is_torn;
     return would_fail ? fmax(p->near, otherwise) : otherwise;
 }
 
@@ -505,15 +511,10 @@ static void approach_meeting(const csg_sheet_probe *p, apex_way *a)
 static void set_out_to_meet(const csg_sheet_probe *p, apex_way *a, int creases)
 {
     const csg_polygon *polygon = a->search->polygon;
-    csg_vec3 sum = {0, 0, 0}, mean;
-    for (int i = 0; i < polygon->count; i++)
-        if (polygon->is_crease[i])
-            sum = csg_vec3_add(sum, polygon->point[i].at);
-    a->at = csg_vec3_scale(sum, 1.0 / creases);
+    a->at = middle_of(polygon, true);
     a->stage = MEETING;
-    if (is_sharp(polygon) && a->otherwise == CSG_APEX_SMOOTH)
-        a->otherwise =
-            least_cosine(polygon, &mean) < BLUNT_SHEETS ? CSG_APEX_FAILED : CSG_APEX_BLUNT;
+    if (is_sharp(polygon))
+        a->otherwise = CSG_APEX_FAILED;
     if (gather_sheets(polygon, creases, &a->sheets) &&
         meet(a->sheets.plane, a->sheets.count, &a->at))
         approach_meeting(p, a);
@@ -531,7 +532,7 @@ static void set_out_to_tip(apex_way *a)
     for (int i = 0; i < polygon->count; i++)
         if (!polygon->is_crease[i])
             planes[count++] = csg_plane_of(polygon->point[i].at, 0, polygon->point[i].gradient);
-    csg_vec3 at = middle_of(polygon);
+    csg_vec3 at = middle_of(polygon, false);
     if (meet_many(planes, count, &at) && !(way_out(box, at) > 0))
         check(a, keep_within(box, at, MARGIN * box->cell));
     else
@@ -542,13 +543,11 @@ static void set_out_in_cell(const csg_sheet_probe *p, apex_way *a, csg_apex_sear
 {
     const csg_polygon *polygon = search->polygon;
     csg_vec3 mean;
-    int creases = 0;
+    int creases = csg_polygon_crease_count(polygon);
     *a = (apex_way){.search = search, .otherwise = CSG_APEX_SMOOTH};
-    for (int i = 0; i < polygon->count; i++) {
-        creases += polygon->is_crease[i];
+    for (int i = 0; i < polygon->count; i++)
         if (!polygon->is_crease[i])
             a->slope = fmax(a->slope, csg_vec3_norm(polygon->point[i].gradient));
-    }
     if (polygon->is_torn)
         a->otherwise = CSG_APEX_FAILED;
     if (creases >= 2)

@@ -85,10 +85,17 @@ typedef struct csg_polygon {
     bool is_torn; /* some face has one crease where there are two */
 } csg_polygon;
 
+static inline int csg_polygon_crease_count(const csg_polygon *polygon)
+{
+    int count = 0;
+    for (int i = 0; i < polygon->count; i++)
+        count += polygon->is_crease[i];
+    return count;
+}
+
 typedef enum csg_apex_kind {
     CSG_APEX_SMOOTH, /* on the surface, or near it */
     CSG_APEX_CREASE, /* where the sheets meet */
-    CSG_APEX_BLUNT,  /* as the next, but the sheets are nearly one */
     CSG_APEX_FAILED  /* sheets should meet, but not here: it is only near the surface */
 } csg_apex_kind;
 
