@@ -220,22 +220,24 @@ static bool is_hidden(const csg_brick *brick, const unsigned cell[3], bool sign)
 }
 
 /* The cells that hide what three places show; where the surface goes through between the outer two,
- * the middle one is put into `out`. */
+ * the middle one is put into `out`: there the sign is enough, since at an edge or a corner of the
+ * leaf these may hardly be off its faces. noise: of values. */
 static uint8_t judge_places(const csg_bricks *b, const csg_brick *brick, const batch *at, int first,
-                            double least, csg_hunted *out)
+                            double least, double noise, csg_hunted *out)
 {
-    bool is_deep[SIDES];
+    bool is_deep[SIDES], is_sure[SIDES];
     unsigned cell[3], cells = 0;
     for (int side = BELOW; side < SIDES; side++) {
         int k = first + side;
         const float place[3] = {at->x[k], at->y[k], at->z[k]};
         is_deep[side] = fabs((double)at->f[k]) > least;
+        is_sure[side] = fabs((double)at->f[k]) > noise;
         find_cell(b, brick, place, cell);
         if (is_deep[side] && is_hidden(brick, cell, at->f[k] >= 0))
             cells |= 1u << csg_brick_cell(cell[0], cell[1], cell[2]);
     }
     int on = first + ON;
-    if (cells || is_deep[ON] || !is_deep[BELOW] || !is_deep[ABOVE] ||
+    if (cells || is_deep[ON] || !is_sure[BELOW] || !is_sure[ABOVE] ||
         out->count == CSG_HUNT_LEAF_POINTS ||
         (at->f[first + BELOW] >= 0) == (at->f[first + ABOVE] >= 0))
         return (uint8_t)cells;
@@ -252,7 +254,7 @@ static uint8_t look_from(leaf_look *l, const csg_bricks *b, const csg_brick *bri
 {
     csg_sheet_probe *p = l->probe;
     batch at;
-    double least = DEPTH * tolerance * (double)l->tape.lipschitz + 4 * p->noise;
+    double noise = 4 * p->noise, least = DEPTH * tolerance * (double)l->tape.lipschitz + noise;
     unsigned cells = 0;
     int places = find_places(l, starts, count, STEP * tolerance, &at);
     if (!places)
@@ -262,7 +264,7 @@ static uint8_t look_from(leaf_look *l, const csg_bricks *b, const csg_brick *bri
                       p->scratch_floats);
     p->evaluations += (uint64_t)places;
     for (int k = 0; k < places; k += SIDES)
-        cells |= judge_places(b, brick, &at, k, least, out);
+        cells |= judge_places(b, brick, &at, k, least, noise, out);
     return (uint8_t)cells;
 }
 
