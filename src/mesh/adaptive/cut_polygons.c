@@ -8,8 +8,12 @@
 /* Points asked at once; of one piece there are fewer. */
 enum { MOST_OF_ONE = 4 * CSG_POLYGON_MOST, MOST = 4 * MOST_OF_ONE };
 
-/* Of the tolerance: fans that are so near have their creases as edges, up to the apex at least. */
-static const double NEAR = 0.5;
+/* Cosine between the normals of a triangle and of its sheet: below it, the triangle looks away. */
+static const double LOOKS_AWAY = 0.17;
+/* Of the tolerance: fans that are so near have their creases as edges, up to the apex at least.
+ * Where sheets turn by more than 30 degrees from their mean, what a fan cuts off may be farther
+ * from it than it is from the surface, several times. */
+static const double BLUNT = 0.866, NEAR_IF_BLUNT = 0.5, NEAR_IF_SHARP = 0.2;
 
 typedef struct points {
     float x[MOST + CSG_LANES], y[MOST + CSG_LANES], z[MOST + CSG_LANES], f[MOST + CSG_LANES];
@@ -143,18 +147,6 @@ static bool looks_one_way(const csg_cut_polygon *piece)
     return true;
 }
 
-/* Whether all gradients are near their mean: it is one sheet. */
-static bool is_one_sheet(const csg_polygon *p)
-{
-    csg_vec3 mean = {0, 0, 0};
-    for (int i = 0; i < p->count; i++)
-        mean = csg_vec3_add(mean, csg_vec3_normalize(p->point[i].gradient));
-    for (int i = 0; i < p->count; i++)
-        if (!(csg_gradients_cosine(p->point[i].gradient, mean) > ONE_WAY))
-            return false;
-    return true;
-}
-
 /* Whether a diagonal leads from each crease point to another: no crease ends in the cell. */
 static bool joins_creases(const csg_cut_polygon *piece)
 {
@@ -177,7 +169,7 @@ bool csg_cut_without_apex(csg_cut_polygon *piece)
         return csg_cut_plain(piece);
     piece->is_fan = false;
     int creases = csg_polygon_crease_count(p);
-    if (creases ? creases == 1 || p->is_torn : !is_one_sheet(p))
+    if (creases ? creases == 1 || p->is_torn : !(csg_polygon_least_cosine(p) > ONE_WAY))
         return false; /* a crease that ends in the cell does so in an apex */
     return p->count <= MOST_BETWEEN && choose_cut(piece) && joins_creases(piece) &&
            looks_one_way(piece);
@@ -221,7 +213,7 @@ static bool add_points(points *q, const csg_cut_polygon *piece, double least_hei
         csg_vec3 cross = csg_vec3_cross(csg_vec3_sub(b, a), csg_vec3_sub(c, a));
         csg_vec3 longest = csg_vec3_sub(b, c);
         double height = csg_vec3_norm(cross) / fmax(csg_vec3_norm(longest), 1e-30);
-        if (height > least_height && csg_vec3_dot(cross, g) > 0)
+        if (height > least_height && -csg_gradients_cosine(cross, g) < LOOKS_AWAY)
             return false;
         add_point(q, csg_vec3_scale(csg_vec3_add(a, csg_vec3_add(b, c)), 1.0 / 3));
         add_point(q, csg_vec3_scale(csg_vec3_add(a, b), 0.5));
@@ -284,7 +276,8 @@ void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pie
 void csg_cuts_settle_near(csg_cut_polygon *const *fans, int count, double tolerance)
 {
     for (int i = 0; i < count; i++) {
-        if (!(fans[i]->distance <= NEAR * tolerance))
+        bool is_blunt = csg_polygon_least_cosine(&fans[i]->polygon) > BLUNT;
+        if (!(fans[i]->distance <= (is_blunt ? NEAR_IF_BLUNT : NEAR_IF_SHARP) * tolerance))
             continue;
         fans[i]->polygon.is_torn = false;
         if (fans[i]->kind == CSG_APEX_FAILED)

@@ -415,17 +415,16 @@ static bool gather_sheets(const csg_polygon *polygon, int creases, sheets *s)
     return true;
 }
 
-/* How far the gradients of a polygon turn: the least cosine to their mean. */
-static double least_cosine(const csg_polygon *polygon, csg_vec3 *mean)
+double csg_polygon_least_cosine(const csg_polygon *polygon)
 {
     double least = 1;
-    *mean = csg_vec3_make(0, 0, 0);
+    csg_vec3 mean = csg_vec3_make(0, 0, 0);
     for (int i = 0; i < polygon->count; i++)
         if (!polygon->is_crease[i])
-            *mean = csg_vec3_add(*mean, csg_vec3_normalize(polygon->point[i].gradient));
+            mean = csg_vec3_add(mean, csg_vec3_normalize(polygon->point[i].gradient));
     for (int i = 0; i < polygon->count; i++)
         if (!polygon->is_crease[i])
-            least = fmin(least, csg_gradients_cosine(polygon->point[i].gradient, *mean));
+            least = fmin(least, csg_gradients_cosine(polygon->point[i].gradient, mean));
     return least;
 }
 
@@ -542,7 +541,6 @@ static void set_out_to_tip(apex_way *a)
 static void set_out_in_cell(const csg_sheet_probe *p, apex_way *a, csg_apex_search *search)
 {
     const csg_polygon *polygon = search->polygon;
-    csg_vec3 mean;
     int creases = csg_polygon_crease_count(polygon);
     *a = (apex_way){.search = search, .otherwise = CSG_APEX_SMOOTH};
     for (int i = 0; i < polygon->count; i++)
@@ -552,7 +550,7 @@ static void set_out_in_cell(const csg_sheet_probe *p, apex_way *a, csg_apex_sear
         a->otherwise = CSG_APEX_FAILED;
     if (creases >= 2)
         set_out_to_meet(p, a, creases);
-    else if (least_cosine(polygon, &mean) < CSG_LEAST_CREASE_COSINE)
+    else if (csg_polygon_least_cosine(polygon) < CSG_LEAST_CREASE_COSINE)
         set_out_to_tip(a);
     else
         land(a);

@@ -93,6 +93,9 @@ static inline int csg_polygon_crease_count(const csg_polygon *polygon)
     return count;
 }
 
+/* How far the gradients of a polygon turn: the least cosine to their mean. */
+double csg_polygon_least_cosine(const csg_polygon *polygon);
+
 typedef enum csg_apex_kind {
     CSG_APEX_SMOOTH, /* on the surface, or near it */
     CSG_APEX_CREASE, /* where the sheets meet */
