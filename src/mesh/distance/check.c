@@ -151,9 +151,10 @@ static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec
 /* Whether all of the piece is inside a step along the axis, and outside a step back. Values lie
  * between those at the corners of a small triangle but for what gradients stray by from one vector.
  * As many triangles as it takes: gradients are found once, and values cost little. No gradient is
- * longer than `longest`: no place is farther from zero than that on both sides. */
+ * longer than `longest`: no place is farther from zero than that on both sides. *excess, where that
+ * fails: by what factor gradients stray too much. */
 static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3], double stray,
-                             double longest, csg_vec3 axis)
+                             double longest, csg_vec3 axis, double *excess)
 {
     csg_vec3 step = csg_vec3_scale(axis, p->error);
     double slack = slack_of(p);
@@ -164,8 +165,10 @@ static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 
         double margin = margin_of(p, s, v, step, cuts, stray / MOST_CUTS + slack) - slack;
         if (margin * cuts > stray)
             return true;
-        if (!(margin * MOST_CUTS > stray))
+        if (!(margin * MOST_CUTS > stray)) {
+            *excess = margin > 0 ? stray / (margin * MOST_CUTS) : INFINITY;
             return false;
+        }
         int enough = (int)ceil(stray / margin);
         cuts = enough > cuts ? enough : cuts + 1;
     }
@@ -173,7 +176,7 @@ static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 
 }
 
 static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3],
-                            const csg_gradients *gradients)
+                            const csg_gradients *gradients, double *excess)
 {
     csg_cone cone;
     if (!csg_gradients_find_axis(gradients, &cone))
@@ -182,7 +185,7 @@ static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v
     double longest = fmin(gradients->longest, (double)s->tape.lipschitz);
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
     return (gradients->low >= -least && gradients->high <= least) ||
-           settles_by_steps(p, s, d, v, gradients->stray, longest, axis);
+           settles_by_steps(p, s, d, v, gradients->stray, longest, axis, excess);
 }
 
 /* Thin walls, sharp tips: a change of sign in any direction will do. */
@@ -223,7 +226,8 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
 /* FAR: no surface is as near as it should be, whatever the piece is cut into. */
 typedef enum verdict { OPEN, SETTLED, FAR } verdict;
 
-static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal)
+static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal,
+                      double *excess)
 {
     static const double STEPS_REACH = 6; /* of the error */
     disc d = disc_of(v);
@@ -232,9 +236,11 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
     csg_gradients gradients;
     bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, &near, s->scratch,
                                     p->scratch_floats, &gradients);
+    double any;
+    *excess = INFINITY;
     s->pieces++;
     s->effort += csg_effort_of(&s->tape);
-    if (known && settles_by_cone(p, s, d, v, &gradients)) {
+    if (known && settles_by_cone(p, s, d, v, &gradients, excess)) {
         s->by_cone++;
         return SETTLED;
     }
@@ -248,7 +254,7 @@ static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 
     /* any gradient is as near to zero as that */
     csg_vec3 inward = csg_vec3_scale(normal, -1);
     if ((!known || gradients.stray > 0.5 * steepest) &&
-        settles_by_steps(p, s, d, v, steepest, steepest, inward))
+        settles_by_steps(p, s, d, v, steepest, steepest, inward, &any))
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
     return d.radius <= 0.5 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
@@ -290,7 +296,8 @@ static bool settle_halves(const proof *p, settler *s, const piece *whole)
     while (top) {
         csg_vec3 v[3];
         memcpy(v, stack[--top], sizeof v);
-        verdict what = settle(p, s, v, whole->normal);
+        double any;
+        verdict what = settle(p, s, v, whole->normal, &any);
         if (what == SETTLED)
             continue;
         if (what == FAR || top + 2 > STACK || s->pieces > most ||
@@ -308,19 +315,29 @@ static bool settle_halves(const proof *p, settler *s, const piece *whole)
  * whose gradients say by themselves what does not take part, is cut without another tape. */
 enum { FIRST_SIDE = 8, FIRST_ERRORS = 64, DEEPEST = 8, FEW_NODES = 6 };
 
-/* Eight parts of a piece, by three bisections. */
-static void cut_in_eight(const piece *whole, piece parts[CSG_OCTANTS])
+/* Eight parts of a piece, by three bisections, or fewer by fewer. */
+static void cut(const piece *whole, piece *parts, int count)
 {
-    for (int i = 0; i < CSG_OCTANTS; i++)
+    for (int i = 0; i < count; i++)
         parts[i] = *whole;
-    for (int half = CSG_OCTANTS / 2; half; half /= 2)
-        for (int i = 0; i < CSG_OCTANTS; i += 2 * half) {
+    for (int half = count / 2; half; half /= 2)
+        for (int i = 0; i < count; i += 2 * half) {
             csg_vec3 halves[2][3];
             if (!bisect(parts[i].at, 0, halves))
                 continue;
             memcpy(parts[i].at, halves[0], sizeof halves[0]);
             memcpy(parts[i + half].at, halves[1], sizeof halves[1]);
         }
+}
+
+/* Gradients stray by less in a smaller piece, and values between corners by the square of that:
+ * where they stray by little too much, few parts are enough. */
+static int parts_for(double excess)
+{
+    int count = 2;
+    while (count < CSG_OCTANTS && excess > count)
+        count *= 2;
+    return count;
 }
 
 /* Tapes for the pieces' neighbourhoods, from one that holds around all of them. A tape without
@@ -351,33 +368,45 @@ static bool prune_eight(proof *p, settler *s, const csg_tape *from, const piece 
     return true;
 }
 
-/* Settles pieces one by one; what is large and of several leaves is cut in eight, whose tapes are
- * shorter. False: out of memory. */
+static bool has_open(const piece *pieces, size_t count, uint32_t triangle)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any |= pieces[i].triangle == triangle && pieces[i].open;
+    return any;
+}
+
+/* Settles pieces; what is large and of several leaves is cut in up to eight, whose tapes are
+ * shorter. A triangle with an open piece is mended, whatever its others are: all are looked at
+ * before any of them is cut, and no more than it takes to find one that stays open. False: out of
+ * memory. */
 static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *pieces, size_t count,
                          int depth)
 {
     csg_tape tapes[CSG_OCTANTS];
+    verdict what[CSG_OCTANTS];
+    double excess[CSG_OCTANTS];
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
     bool done = prune_eight(p, s, from, pieces, count, tapes);
     for (size_t i = 0; done && i < count; i++) {
-        piece parts[CSG_OCTANTS];
         s->tape = tapes[i];
-        pieces[i].open = !tapes[i].count;
-        if (pieces[i].open)
+        what[i] = tapes[i].count ? settle(p, s, pieces[i].at, pieces[i].normal, &excess[i]) : FAR;
+        pieces[i].open = what[i] == FAR;
+    }
+    for (size_t i = 0; done && i < count; i++) {
+        piece parts[CSG_OCTANTS];
+        if (what[i] != OPEN || has_open(pieces, count, pieces[i].triangle))
             continue;
-        verdict what = settle(p, s, pieces[i].at, pieces[i].normal);
-        pieces[i].open = what == FAR;
-        if (what != OPEN)
-            continue;
+        s->tape = tapes[i];
         if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
             disc_of(pieces[i].at).radius < 2 * p->error) {
             pieces[i].open = !settle_halves(p, s, &pieces[i]);
             continue;
         }
-        cut_in_eight(&pieces[i], parts);
-        done = settle_eight(p, s, &tapes[i], parts, CSG_OCTANTS, depth + 1);
-        for (int k = 0; done && k < CSG_OCTANTS; k++)
-            pieces[i].open |= parts[k].open;
+        int part_count = parts_for(excess[i]);
+        cut(&pieces[i], parts, part_count);
+        done = settle_eight(p, s, &tapes[i], parts, (size_t)part_count, depth + 1);
+        pieces[i].open = done && has_open(parts, (size_t)part_count, pieces[i].triangle);
     }
     csg_arena_release_to(&s->arena, mark);
     return done;
