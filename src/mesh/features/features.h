@@ -91,6 +91,8 @@ typedef struct csg_feature {
     bool made_way;  /* one has for this feature */
     uint8_t moves;  /* of its corners until now */
     uint8_t shift;  /* how much has been tried of that */
+
+    bool is_plane; /* beside its creases the surface was, where they cross its sides */
 } csg_feature;
 
 /* A feature with lists of its own, long enough for any: where one is made, or kept as it was. */
