@@ -194,6 +194,7 @@ typedef struct csg_feature_room {
     csg_edges edges;
     csg_slots slots;
     float gradient[3 * CSG_BLOCK_POINTS][3]; /* by slot */
+    float value[3 * CSG_BLOCK_POINTS];       /* the same */
     csg_segment segments[CSG_FEATURE_SEGMENTS];
     uint32_t segment_count;
     csg_found_loop loops[CSG_FEATURE_SEGMENTS / 4];
