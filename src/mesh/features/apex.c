@@ -161,16 +161,9 @@ static bool look_around(const polygon *p, const apex *a, int sheet, double off,
     return found;
 }
 
-/* How sheets are asked for. */
-typedef struct look {
-    double off;    /* the apexes */
-    bool is_all;   /* what does not show itself here is lost */
-    bool is_brief; /* nor is it looked for elsewhere */
-} look;
-
 /* Asks for all sheets of all apexes at once, but those that are done. */
-static void sample_sheets(const csg_apex_walk *walks, int count, look how, const bool *is_done,
-                          csg_feature_probe *probe)
+static void sample_sheets(const csg_apex_walk *walks, int count, double off, bool last,
+                          const bool *is_done, csg_feature_probe *probe)
 {
     float x[MOST * MOST_SHEETS] = {0}, y[MOST * MOST_SHEETS] = {0}, z[MOST * MOST_SHEETS] = {0};
     float f[MOST * MOST_SHEETS], gx[MOST * MOST_SHEETS], gy[MOST * MOST_SHEETS],
@@ -183,7 +176,7 @@ static void sample_sheets(const csg_apex_walk *walks, int count, look how, const
     for (int k = 0; k < count; k++)
         for (int s = 0; s < walks[k].polygon->sheets && !walks[k].apex->lost && !is_done[k];
              s++, n++) {
-            csg_vec3 q = sheet_point(walks[k].polygon, walks[k].apex, s, how.off);
+            csg_vec3 q = sheet_point(walks[k].polygon, walks[k].apex, s, off);
             x[n] = (float)q.x, y[n] = (float)q.y, z[n] = (float)q.z;
             walk[n] = &walks[k];
             sheet[n] = s;
@@ -198,11 +191,11 @@ static void sample_sheets(const csg_apex_walk *walks, int count, look how, const
         a->lost |= f[i] != f[i];
         bool still = fabs((double)f[i]) <= band && is_still(p, a, sheet[i], plane.g);
         fresh[i] = still ? plane : a->planes[sheet[i]];
-        if (!still && !how.is_brief && p->creased && f[i] == f[i] &&
+        if (!still && p->creased && f[i] == f[i] &&
             may_be_around(probe, a, csg_vec3_make((double)x[i], (double)y[i], (double)z[i]),
-                          fmin(fabs((double)f[i]), band), how.off))
-            still = look_around(p, a, sheet[i], how.off, probe, &fresh[i]);
-        a->lost |= how.is_all && !still;
+                          fmin(fabs((double)f[i]), band), off))
+            still = look_around(p, a, sheet[i], off, probe, &fresh[i]);
+        a->lost |= last && !still;
     }
     for (size_t i = 0; i < n; i++)
         walk[i]->apex->planes[sheet[i]] = fresh[i];
@@ -273,7 +266,7 @@ static bool are_same(const polygon *p, const apex *before, const apex *now)
 static void meet_planes(const csg_apex_walk *walks, int count, double cell,
                         csg_feature_probe *probe, bool *is_done)
 {
-    const look how = {OFF[STEPS - 1] * cell, true, true};
+    const double off = OFF[STEPS - 1] * cell;
     apex before[MOST];
     csg_vec3 from[MOST];
     bool is_left_out[MOST] = {false};
@@ -287,14 +280,14 @@ static void meet_planes(const csg_apex_walk *walks, int count, double cell,
             slide(walks[k].polygon, a, cell);
         from[k] = a->at;
     }
-    sample_sheets(walks, count, how, is_left_out, probe);
+    sample_sheets(walks, count, off, true, is_left_out, probe);
     for (int k = 0; k < count; k++) {
         apex *a = walks[k].apex;
         if (is_left_out[k])
             continue;
         csg_apex_meet(walks[k].polygon, a, cell);
         is_done[k] = !a->lost && are_same(walks[k].polygon, &before[k], a) &&
-                     csg_vec3_norm(csg_vec3_sub(a->at, from[k])) < how.off;
+                     csg_vec3_norm(csg_vec3_sub(a->at, from[k])) < off;
         if (!is_done[k])
             *a = before[k];
     }
@@ -306,8 +299,7 @@ void csg_apexes_improve(const csg_apex_walk *walks, int count, double cell,
     bool is_done[MOST] = {false};
     meet_planes(walks, count, cell, probe, is_done);
     for (int step = 0; step < STEPS; step++) {
-        const look how = {OFF[step] * cell, step >= STEPS - 2, false};
-        sample_sheets(walks, count, how, is_done, probe);
+        sample_sheets(walks, count, OFF[step] * cell, step >= STEPS - 2, is_done, probe);
         for (int k = 0; k < count; k++) {
             const csg_apex_walk *s = &walks[k];
             if (is_done[k])
