@@ -27,8 +27,8 @@ void csg_scan_values(csg_scan *scan, const float *f, size_t n, const uint32_t fi
  * block it cannot. */
 bool csg_scan_is_due(const csg_lattice *lattice, double margin, const uint32_t at[3],
                      const csg_tape *tape);
-/* Whether a look at the samples costs less than that question: of shapes the normals of all that is
- * near answer it, and most blocks show nothing doubtful. */
+/* Whether a look at the samples costs less than that question: of polyhedra the normals of all that
+ * is near answer it, each with a proof, and most blocks show nothing doubtful. */
 bool csg_scan_comes_first(const csg_tape *tape);
 
 #endif

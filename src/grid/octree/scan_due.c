@@ -20,6 +20,7 @@ bool csg_scan_comes_first(const csg_tape *tape)
 {
     bool any = false;
     for (uint32_t i = 0; i < tape->count && !any; i++)
-        any = tape->nodes[i].op == CSG_OP_SHAPE;
+        any = tape->nodes[i].op == CSG_OP_SHAPE &&
+              csg_tape_shape(tape, &tape->nodes[i])->kind == CSG_SHAPE_POLYHEDRON;
     return any;
 }
