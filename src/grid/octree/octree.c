@@ -10,7 +10,6 @@
 
 #include "base/pool.h"
 #include "base/trace.h"
-#include "field/cones/cone.h"
 #include "field/kernels/dispatch.h"
 #include "field/prune/prune.h"
 
@@ -184,20 +183,6 @@ static void count_samples(worker *self, const csg_tape *tape)
     stats->tape_nodes_sampled += nodes / CSG_OCTANTS;
 }
 
-/* Only where the field may not climb in one direction all over the block can it hide anything. */
-static bool begin_scan(const walk *w, csg_scan *scan, const uint32_t at[3], const csg_tape *tape)
-{
-    csg_cone cone;
-    float c[3];
-    for (int axis = 0; axis < 3; axis++)
-        c[axis] = csg_lattice_coordinate(w->lattice, axis,
-                                         at[axis] * CSG_BLOCK_EDGE + CSG_BLOCK_EDGE / 2);
-    *scan = (csg_scan){.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
-    double radius =
-        (double)csg_lattice_ball_radius(w->lattice, w->options.margin, CSG_BLOCK_EDGE / 2);
-    return !csg_cone_find(NULL, tape, c, radius, &cone);
-}
-
 static bool keep_doubt(walk *w, worker *self, const csg_scan *scan)
 {
     if (!(scan->doubt > 0))
@@ -228,11 +213,17 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
     if (w->options.prune && is_long(tape) && !split_block(w, self, at, tape))
         return false;
     count_samples(self, tape);
-    csg_scan scan = {0};
+    csg_scan scan = {.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
     csg_beads *beads = w->options.beads ? &self->beads : NULL;
-    self->samples->scan = w->scans && begin_scan(w, &scan, at, tape) ? &scan : NULL;
+    bool scans_first = csg_scan_comes_first(tape);
+    self->samples->scan =
+        w->scans && (scans_first || csg_scan_is_due(w->lattice, w->options.margin, at, tape))
+            ? &scan
+            : NULL;
     bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, beads,
                                     self->samples, self->scratch, self->scratch_floats);
+    if (scan.doubt > 0 && scans_first && !csg_scan_is_due(w->lattice, w->options.margin, at, tape))
+        scan.doubt = 0;
     if (!keep_doubt(w, self, &scan))
         return false;
     if (!crossed) {

@@ -7,9 +7,8 @@
 #ifndef CSG_GRID_SCAN_H
 #define CSG_GRID_SCAN_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "field/tape.h"
+#include "grid/octree/lattice.h"
 
 /* The doubtful edge of a block that is most so, and how many there are. */
 typedef struct csg_scan {
@@ -23,5 +22,13 @@ typedef struct csg_scan {
 
 /* Values of the n^3 points from lattice point `first` on, x fastest. */
 void csg_scan_values(csg_scan *scan, const float *f, size_t n, const uint32_t first[3]);
+
+/* Whether the field may hide anything in block `at`: where it climbs in one direction all over the
+ * block it cannot. */
+bool csg_scan_is_due(const csg_lattice *lattice, double margin, const uint32_t at[3],
+                     const csg_tape *tape);
+/* Whether a look at the samples costs less than that question: of polyhedra the normals of all that
+ * is near answer it, each with a proof, and most blocks show nothing doubtful. */
+bool csg_scan_comes_first(const csg_tape *tape);
 
 #endif

@@ -161,9 +161,9 @@ static bool look_around(const polygon *p, const apex *a, int sheet, double off,
     return found;
 }
 
-/* Asks for all sheets of all apexes at once. */
+/* Asks for all sheets of all apexes at once, but those that are done. */
 static void sample_sheets(const csg_apex_walk *walks, int count, double off, bool last,
-                          csg_feature_probe *probe)
+                          const bool *is_done, csg_feature_probe *probe)
 {
     float x[MOST * MOST_SHEETS] = {0}, y[MOST * MOST_SHEETS] = {0}, z[MOST * MOST_SHEETS] = {0};
     float f[MOST * MOST_SHEETS], gx[MOST * MOST_SHEETS], gy[MOST * MOST_SHEETS],
@@ -174,7 +174,8 @@ static void sample_sheets(const csg_apex_walk *walks, int count, double off, boo
     int sheet[MOST * MOST_SHEETS];
     size_t n = 0;
     for (int k = 0; k < count; k++)
-        for (int s = 0; s < walks[k].polygon->sheets && !walks[k].apex->lost; s++, n++) {
+        for (int s = 0; s < walks[k].polygon->sheets && !walks[k].apex->lost && !is_done[k];
+             s++, n++) {
             csg_vec3 q = sheet_point(walks[k].polygon, walks[k].apex, s, off);
             x[n] = (float)q.x, y[n] = (float)q.y, z[n] = (float)q.z;
             walk[n] = &walks[k];
@@ -243,14 +244,66 @@ void csg_apex_meet(const polygon *p, apex *a, double cell)
         a->lost || !csg_planes_meet(a->planes, p->sheets, &a->at) || !near_polygon(p, a, cell);
 }
 
+/* Cells off the apex, step by step. */
+static const double OFF[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
+
+/* Whether the sheets have the gradients that they had before: sin^2 of 3e-6. */
+static bool are_same(const polygon *p, const apex *before, const apex *now)
+{
+    static const double MOST_SINE_SQUARE = 1e-11;
+    for (int s = 0; s < p->sheets; s++) {
+        csg_vec3 g = before->planes[s].g, h = now->planes[s].g, c = csg_vec3_cross(g, h);
+        double square = csg_vec3_dot(g, g) * csg_vec3_dot(h, h);
+        if (!(csg_vec3_dot(c, c) <= MOST_SINE_SQUARE * square && csg_vec3_dot(g, h) > 0))
+            return false;
+    }
+    return true;
+}
+
+/* Plane sheets meet where their planes do, and nothing is gained by steps: where each shows the
+ * plane that it began with right beside the apex, as near as the last step looks, that is it. The
+ * other apexes stay as they are. */
+static void meet_planes(const csg_apex_walk *walks, int count, double cell,
+                        csg_feature_probe *probe, bool *is_done)
+{
+    const double off = OFF[STEPS - 1] * cell;
+    apex before[MOST];
+    csg_vec3 from[MOST];
+    bool is_left_out[MOST] = {false};
+    for (int k = 0; k < count; k++) {
+        apex *a = walks[k].apex;
+        is_left_out[k] = !walks[k].is_plane || a->lost;
+        if (is_left_out[k])
+            continue;
+        before[k] = *a;
+        if (walks[k].slides)
+            slide(walks[k].polygon, a, cell);
+        from[k] = a->at;
+    }
+    sample_sheets(walks, count, off, true, is_left_out, probe);
+    for (int k = 0; k < count; k++) {
+        apex *a = walks[k].apex;
+        if (is_left_out[k])
+            continue;
+        csg_apex_meet(walks[k].polygon, a, cell);
+        is_done[k] = !a->lost && are_same(walks[k].polygon, &before[k], a) &&
+                     csg_vec3_norm(csg_vec3_sub(a->at, from[k])) < off;
+        if (!is_done[k])
+            *a = before[k];
+    }
+}
+
 void csg_apexes_improve(const csg_apex_walk *walks, int count, double cell,
                         csg_feature_probe *probe)
 {
-    static const double off[STEPS] = {0.3, 0.1, 0.03, 0.01, 0.003, 0.001};
+    bool is_done[MOST] = {false};
+    meet_planes(walks, count, cell, probe, is_done);
     for (int step = 0; step < STEPS; step++) {
-        sample_sheets(walks, count, off[step] * cell, step >= STEPS - 2, probe);
+        sample_sheets(walks, count, OFF[step] * cell, step >= STEPS - 2, is_done, probe);
         for (int k = 0; k < count; k++) {
             const csg_apex_walk *s = &walks[k];
+            if (is_done[k])
+                continue;
             csg_apex_meet(s->polygon, s->apex, cell);
             if (s->slides && !s->apex->lost && step < 2)
                 slide(s->polygon, s->apex, cell);
@@ -339,7 +392,7 @@ bool csg_apex_find(const polygon *p, apex *a, csg_feature_probe *probe, csg_feat
 {
     const csg_marching *m = probe->marching;
     double cell = m->lattice->cell_size;
-    const csg_apex_walk walk = {p, a, false};
+    const csg_apex_walk walk = {p, a, false, out->is_plane};
     float f;
     csg_apex_meet(p, a, cell);
     csg_apexes_improve(&walk, 1, cell, probe);

@@ -43,7 +43,8 @@ void csg_apex_meet(const csg_feature_polygon *polygon, csg_apex *apex, double ce
 typedef struct csg_apex_walk {
     const csg_feature_polygon *polygon;
     csg_apex *apex;
-    bool slides; /* along its crease, to where the fan looks out */
+    bool slides;   /* along its crease, to where the fan looks out */
+    bool is_plane; /* its sheets may be: that is tried before it is taken nearer step by step */
 } csg_apex_walk;
 
 enum { CSG_FEATURE_MOST_WALKS = 16 };

@@ -198,14 +198,25 @@ static run *run_of(adding *a, const uint32_t at[3])
     return last;
 }
 
-/* One place's feature, if there is none yet. */
+static uint16_t cell_in_block(const place *q)
+{
+    return (uint16_t)(q->cell[0] % E + (q->cell[1] % E + q->cell[2] % E * E) * E);
+}
+
+/* Whether the store has the feature of a place. */
+static bool is_in_store(const adding *a, const place *q)
+{
+    const uint32_t at[3] = {q->cell[0] / E, q->cell[1] / E, q->cell[2] / E};
+    const csg_feature_block *block = csg_feature_store_find(a->store, at);
+    return block &&
+           is_known(a->store->features, block->first, block->count, cell_in_block(q), q->edge);
+}
+
+/* The feature of a place that is not in the store, if it was not made yet. */
 static bool add_place(adding *a, const place *q, const csg_feature_cell *found)
 {
     const uint32_t at[3] = {q->cell[0] / E, q->cell[1] / E, q->cell[2] / E};
-    uint16_t cell = (uint16_t)(q->cell[0] % E + (q->cell[1] % E + q->cell[2] % E * E) * E);
-    const csg_feature_block *block = csg_feature_store_find(a->store, at);
-    if (block && is_known(a->store->features, block->first, block->count, cell, q->edge))
-        return true;
+    uint16_t cell = cell_in_block(q);
     run *to = run_of(a, at);
     if (!to)
         return false;
@@ -304,14 +315,18 @@ bool csg_feature_add_bare(csg_feature_store *store, const csg_marching *m, const
     csg_memory *memory = store->memory;
     adding a = {.store = store, .m = m};
     csg_feature_cell found = {0};
+    const place *last = NULL; /* whose cell was found */
     bool done = list_places(&a);
     if (a.place_count)
         qsort(a.places, a.place_count, sizeof *a.places, compare_places);
     for (size_t i = 0; i < a.place_count && done; i++) {
         const place *q = &a.places[i];
-        if (i == 0 || memcmp(q[-1].cell, q->cell, sizeof q->cell) != 0)
+        if (is_in_store(&a, q))
+            continue;
+        if (!last || memcmp(last->cell, q->cell, sizeof q->cell) != 0)
             *evaluations +=
                 csg_feature_cell_find(m, octree, q->cell, edges, scratch, scratch_floats, &found);
+        last = q;
         done = add_place(&a, q, &found);
     }
     done = done && (!a.count || merge(&a));

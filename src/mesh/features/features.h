@@ -91,6 +91,8 @@ typedef struct csg_feature {
     bool made_way;  /* one has for this feature */
     uint8_t moves;  /* of its corners until now */
     uint8_t shift;  /* how much has been tried of that */
+
+    bool is_plane; /* beside its creases the surface was, where they cross its sides */
 } csg_feature;
 
 /* A feature with lists of its own, long enough for any: where one is made, or kept as it was. */
@@ -192,6 +194,7 @@ typedef struct csg_feature_room {
     csg_edges edges;
     csg_slots slots;
     float gradient[3 * CSG_BLOCK_POINTS][3]; /* by slot */
+    float value[3 * CSG_BLOCK_POINTS];       /* the same */
     csg_segment segments[CSG_FEATURE_SEGMENTS];
     uint32_t segment_count;
     csg_found_loop loops[CSG_FEATURE_SEGMENTS / 4];

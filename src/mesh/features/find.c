@@ -29,7 +29,7 @@ static const float WIDE = 0.9f;
 
 /* ---- vertices -------------------------------------------------------------------------------- */
 
-/* Gradients at the vertices in room->gradient, by slot. */
+/* Values and gradients at the vertices, by slot. */
 static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
 {
     const csg_slots *slots = &room->slots;
@@ -38,10 +38,12 @@ static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
         room->x[i] = p[0], room->y[i] = p[1], room->z[i] = p[2];
     }
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_feature_probe_points(probe, room->x, room->y, room->z, slots->count, NULL, g);
-    for (uint32_t i = 0; i < slots->count; i++)
+    csg_feature_probe_points(probe, room->x, room->y, room->z, slots->count, room->f, g);
+    for (uint32_t i = 0; i < slots->count; i++) {
+        room->value[slots->slot[i]] = room->f[i];
         for (int axis = 0; axis < 3; axis++)
             room->gradient[slots->slot[i]][axis] = room->g[axis][i];
+    }
 }
 
 /* ---- segments -------------------------------------------------------------------------------- */
@@ -172,8 +174,9 @@ static void halve(csg_feature_room *room, csg_feature_probe *probe)
 }
 
 /* Where sheets are plane a segment's jump is known beforehand: where the tangent planes at both
- * vertices, where f is 0, are as high as each other. Returns the bracket, of 2^HALVINGS, in which
- * that is; -1: at an end, or nowhere. */
+ * vertices are as high as each other. Vertices are roots to 2^-14 of their edge, which is several
+ * brackets where a crease is blunt: so f counts. Returns the bracket, of 2^HALVINGS, in which that
+ * is; -1: at an end, or nowhere. */
 static int expected_bracket(const csg_feature_room *room, const csg_segment *s)
 {
     const float *a = room->slots.at[s->from], *b = room->slots.at[s->to];
@@ -183,7 +186,8 @@ static int expected_bracket(const csg_feature_room *room, const csg_segment *s)
         rise += from[axis] * (b[axis] - a[axis]);
         fall -= to[axis] * (b[axis] - a[axis]);
     }
-    float t = fall / (rise + fall) * BRACKETS;
+    float step = room->value[s->to] - room->value[s->from];
+    float t = (step + fall) / (rise + fall) * BRACKETS;
     return t >= 1 && t < BRACKETS - 1 ? (int)t : -1;
 }
 

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/features/cell.h"
-
 enum { E = CSG_BLOCK_EDGE };
 
 /* ---- a block and what lies around --------------------------------------------------------------
@@ -349,10 +347,26 @@ static bool sort_places(const view *v)
     return true;
 }
 
+/* Two blocks along each axis: as far as most searches of a block and the next one go. */
+enum { KEPT_BITS = 4, KEPT = 1 << KEPT_BITS };
+
+static bool reserve_cells(csg_memory *memory, csg_near_room *room)
+{
+    if (room->cells)
+        return true;
+    if (!csg_memory_reserve(memory, (void **)&room->cells, &room->cell_capacity, KEPT * KEPT * KEPT,
+                            sizeof *room->cells))
+        return false;
+    memset(room->cells, 0xFF, room->cell_capacity * sizeof *room->cells); /* of no cell */
+    return true;
+}
+
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
 {
     view v = view_of(near, room, index);
     csg_near_box within = NOWHERE;
+    if (!reserve_cells(near->memory, room))
+        return false;
     room->count = room->place_count = 0;
     memset(room->own_cells, 0, sizeof room->own_cells);
     if (!add_block(&v, v.block, NULL))
@@ -390,12 +404,26 @@ static unsigned loops_known(const csg_feature_store *store, const csg_cell_table
     return known;
 }
 
+static const csg_feature_cell *find_cell(const view *v, const uint32_t cell[3])
+{
+    csg_near_room *room = v->room;
+    csg_near_cell *kept = &room->cells[cell[0] % KEPT | (cell[1] % KEPT) << KEPT_BITS |
+                                       (cell[2] % KEPT) << 2 * KEPT_BITS];
+    if (memcmp(kept->at, cell, sizeof kept->at) != 0) {
+        memcpy(kept->at, cell, sizeof kept->at);
+        kept->evaluations =
+            (uint32_t)csg_feature_cell_find(v->near->marching, v->near->octree, cell, room->edges,
+                                            room->scratch, room->scratch_floats, &kept->found);
+    }
+    room->evaluations += kept->evaluations;
+    return &kept->found;
+}
+
 /* Triangles of marching cubes in a cell; how many. */
 static int smooth_triangles(const view *v, const int at[3],
                             csg_near_triangle out[CSG_CELL_MOST_TRIANGLES])
 {
     const csg_marching *m = v->near->marching;
-    csg_near_room *room = v->room;
     uint32_t cell[3];
     unsigned pattern;
     for (int axis = 0; axis < 3; axis++) {
@@ -406,19 +434,17 @@ static int smooth_triangles(const view *v, const int at[3],
     unsigned known = loops_known(v->near->store, m->tables, cell, &pattern);
     if (pattern && known == (1u << m->tables->loop_count[pattern]) - 1)
         return 0;
-    csg_feature_cell found;
-    room->evaluations += csg_feature_cell_find(m, v->near->octree, cell, room->edges, room->scratch,
-                                               room->scratch_floats, &found);
-    const uint8_t *edge = m->tables->edge[found.pattern];
+    const csg_feature_cell *found = find_cell(v, cell);
+    const uint8_t *edge = m->tables->edge[found->pattern];
     int count = 0;
-    for (int loop = 0; loop < m->tables->loop_count[found.pattern]; loop++)
-        for (int t = 0; t < m->tables->loop_sides[found.pattern][loop] - 2; t++, edge += 3) {
+    for (int loop = 0; loop < m->tables->loop_count[found->pattern]; loop++)
+        for (int t = 0; t < m->tables->loop_sides[found->pattern][loop] - 2; t++, edge += 3) {
             if (known >> loop & 1)
                 continue;
             csg_near_triangle *to = &out[count++];
             *to = (csg_near_triangle){.owner = {CSG_FEATURE_NONE, CSG_FEATURE_NONE}};
             for (int c = 0; c < 3; c++) {
-                csg_marching_shift(m, found.at[edge[c]], to->shape.at[c]);
+                csg_marching_shift(m, found->at[edge[c]], to->shape.at[c]);
                 to->shape.vertex[c] = number_of_edge(v, at, edge[c]);
             }
         }
@@ -495,6 +521,7 @@ void csg_near_room_release(csg_near_room *room, csg_memory *memory)
 {
     csg_memory_release(memory, room->triangles, room->capacity * sizeof *room->triangles);
     csg_memory_release(memory, room->places, room->place_capacity * sizeof *room->places);
+    csg_memory_release(memory, room->cells, room->cell_capacity * sizeof *room->cells);
     csg_memory_release(memory, room->sorted, room->sorted_capacity * sizeof *room->sorted);
     *room = (csg_near_room){0};
 }

@@ -7,6 +7,7 @@
 #ifndef CSG_MESH_FEATURES_NEAR_H
 #define CSG_MESH_FEATURES_NEAR_H
 
+#include "mesh/features/cell.h"
 #include "mesh/features/exact.h"
 #include "mesh/features/features.h"
 
@@ -26,6 +27,13 @@ typedef struct csg_near_box {
 
 enum { CSG_NEAR_VIEW = 64 }; /* cells along each axis that a search sees: eight blocks */
 
+/* A cell of marching cubes that was found: several blocks and rounds ask for it. */
+typedef struct csg_near_cell {
+    uint32_t at[3];
+    uint32_t evaluations; /* that it took; counted whenever it is asked for, whoever has found it */
+    csg_feature_cell found;
+} csg_near_cell;
+
 /* One thread's room. */
 typedef struct csg_near_room {
     csg_edges *edges; /* lent, as is scratch */
@@ -34,6 +42,8 @@ typedef struct csg_near_room {
     csg_near_triangle *triangles; /* at hand */
     uint64_t *places, *sorted;    /* cell and triangle, by cells; room for sorting them */
     size_t count, capacity, place_count, place_capacity, sorted_capacity;
+    csg_near_cell *cells; /* one for each place in a cube of cells, the last that was asked for */
+    size_t cell_capacity;
     uint64_t own_cells[CSG_NEAR_VIEW * CSG_NEAR_VIEW * CSG_NEAR_VIEW / 64]; /* a bit each: the
                                                                    block has triangles there */
     uint64_t evaluations;

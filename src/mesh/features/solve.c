@@ -119,10 +119,12 @@ static void begin_candidate(const csg_feature_room *room, const csg_found_loop *
     c->loop = loop;
     c->good = mark_sheets(room, loop, &c->p);
     c->crossed = c->found = false;
+    bool is_plane = true;
     c->sharpest = 0;
     for (int s = 0; s < loop->side_count; s++)
         if (loop->crease[s] >= 0) {
             c->crossed = true;
+            is_plane = is_plane && room->segments[loop->crease[s]].found;
             c->sharpest = fmaxf(c->sharpest, room->segments[loop->crease[s]].jump);
         }
     c->is_looked = c->good && (c->crossed || loop->wide);
@@ -131,6 +133,7 @@ static void begin_candidate(const csg_feature_room *room, const csg_found_loop *
     csg_feature_find_middles(&c->p);
     choose_starts(room, loop, &c->p);
     record(room, loop, &c->p, &c->whole);
+    c->whole.feature.is_plane = is_plane && c->p.creased;
     for (int k = 0; k < c->p.start_count; k++) {
         apex *a = &c->apexes[k];
         memset(a, 0, sizeof *a);
@@ -152,7 +155,8 @@ static void try_first(candidate *candidates, int count, csg_feature_probe *probe
         candidate *c = &candidates[i];
         if (!c->is_looked)
             continue;
-        walks[n] = (csg_apex_walk){&c->p, &c->apexes[0], c->p.start_count > 1};
+        walks[n] =
+            (csg_apex_walk){&c->p, &c->apexes[0], c->p.start_count > 1, c->whole.feature.is_plane};
         owner[n++] = c;
     }
     if (!n)
@@ -173,7 +177,7 @@ static void try_others(candidate *c, csg_feature_probe *probe)
     float f[CSG_FEATURE_MOST_STARTS];
     int count = c->p.start_count;
     for (int k = 0; k < count; k++)
-        walks[k] = (csg_apex_walk){&c->p, &c->apexes[k], false};
+        walks[k] = (csg_apex_walk){&c->p, &c->apexes[k], false, c->whole.feature.is_plane};
     csg_apexes_improve(walks + 1, count - 1, m->lattice->cell_size, probe);
     csg_apexes_ask(walks, count, probe, f);
     c->found = csg_apexes_choose(&c->p, c->apexes, f, count, m, &c->whole.feature);
