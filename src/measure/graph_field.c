@@ -381,8 +381,6 @@ bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, doubl
     for (int i = 0; i < f->count; i++) {
         const csg_taylor_piece *piece = &f->of[i];
         csg_graph_patch_turn(&g->bases[i], &piece->f, slope, half);
-        if (g->of[i] == CSG_COLUMNS_CROSSED && !csg_graph_patch_begin(&g->bases[i]))
-            return false;
         g->condition_count[i] = piece->condition_count;
         for (int n = 0; n < piece->condition_count; n++)
             g->conditions[i][n] = csg_graph_patch_turned(&g->bases[i], &piece->conditions[n]);

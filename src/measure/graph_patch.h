@@ -43,10 +43,8 @@ typedef struct csg_graph_base {
     csg_taylor p; /* the polynomial, z last */
     int axes[3];  /* of the field, which become x, y and z */
     double turn;  /* z is that times its axis */
-    double half, fall;
-    double fourth;        /* a 24th of the implicit function's fourth derivatives, at most */
-    double room;          /* the model is off by no more anywhere in the cube */
-    double tangent, bent; /* at least the surface's length along a direction of the face; |H| */
+    double half;
+    double room; /* the model is off by no more anywhere in the cube */
 } csg_graph_base;
 
 /* What the patch's columns are. */
@@ -68,9 +66,6 @@ typedef struct csg_graph_rule {
  * slope is steepest. */
 void csg_graph_patch_turn(csg_graph_base *g, const csg_taylor *f, const double slope[3],
                           double half);
-
-/* How it falls, of one that is turned. False: F may not fall. */
-bool csg_graph_patch_begin(csg_graph_base *g);
 
 /* Another model in the same axes. */
 csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f);
