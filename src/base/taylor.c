@@ -116,14 +116,6 @@ static double square_of_third(const double t[CSG_TAYLOR_THIRD])
                 t[XZZ] * t[XZZ] + t[YZZ] * t[YZZ]);
 }
 
-double csg_taylor_reach(const csg_taylor *a, double r)
-{
-    double bend = 0.5 * sqrt(square_of_bend(a->bend)), third = sqrt(square_of_third(a->third)) / 6;
-    double all = csg_norm3(a->slope) + (bend + (third + a->quartic * r) * r) * r;
-    return (all * r + a->error) * (1 + 1e-12);
-}
-
-/* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
 double csg_taylor_bends(const csg_taylor *a, const double half[3])
 {
     double b[CSG_TAYLOR_SECOND], t[CSG_TAYLOR_THIRD], along[CSG_TAYLOR_SECOND], first[3], second[3],
@@ -140,6 +132,25 @@ double csg_taylor_bends(const csg_taylor *a, const double half[3])
     return reach * (1 + 1e-12);
 }
 
+/* Half an edge of the cube. */
+static double half_of(double r)
+{
+    static const double OF_RADIUS = 0.57735026918962576; /* sqrt(1/3) */
+    return OF_RADIUS * r * (1 + 1e-12);
+}
+
+double csg_taylor_reach(const csg_taylor *a, double r)
+{
+    double half = half_of(r), square = r * r;
+    const double box[3] = {half, half, half};
+    double line = (fabs(a->slope[0]) + fabs(a->slope[1]) + fabs(a->slope[2])) * half;
+    return (line + csg_taylor_bends(a, box) + a->quartic * square * square + a->error) *
+           (1 + 1e-12);
+}
+
+/* Of bends by their norm, or by how far each row reaches, which is less where they are along an
+ * axis; the norm by the largest row sum where that is less: the bends of a ball are the same in two
+ * directions. */
 double csg_taylor_stray(const csg_taylor *a, double r)
 {
     const double *b = a->bend;
@@ -147,8 +158,9 @@ double csg_taylor_stray(const csg_taylor *a, double r)
                       fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
                       fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
     double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
+    double bend = fmin(norm * r, csg_norm3(rows) * half_of(r));
     double third = 0.5 * sqrt(square_of_third(a->third));
-    return ((norm + (third + a->thrice * r) * r) * r + a->turned) * (1 + 1e-12);
+    return (bend + (third + a->thrice * r) * r * r + a->turned) * (1 + 1e-12);
 }
 
 /* ---- functions of functions --------------------------------------------------------------------
@@ -172,7 +184,10 @@ static double norm_of_slopes(const csg_taylor *const *u, int count)
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double r)
 {
     csg_taylor_change c = {.linear = norm_of_slopes(u, count)};
+    double reaches = 0;
     for (int i = 0; i < count; i++) {
+        double reach = csg_taylor_reach(u[i], r);
+        reaches += reach * reach;
         c.square += square_of_bend(u[i]->bend);
         c.cubic += square_of_third(u[i]->third);
         c.quartic += u[i]->quartic * u[i]->quartic;
@@ -187,7 +202,7 @@ csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, do
     c.turned = sqrt(c.turned);
     c.thrice = sqrt(c.thrice);
     double rest = 0.5 * c.square + (c.cubic / 6 + c.quartic * r) * r;
-    c.most = ((c.linear + rest * r) * r + c.error) * (1 + 1e-12);
+    c.most = fmin(sqrt(reaches), (c.linear + rest * r) * r + c.error) * (1 + 1e-12);
     return c;
 }
 
@@ -436,7 +451,7 @@ csg_taylor csg_taylor_square(const csg_taylor *a, double r)
     return csg_taylor_compose(&o, &a, 1, &change, r);
 }
 
-/* Between 0 and the largest power in the ball. */
+/* Between 0 and the largest power in the cube. */
 static csg_taylor power_near_zero(const csg_taylor *a, const csg_taylor_change *c, double p,
                                   double r)
 {

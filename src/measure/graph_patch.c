@@ -93,15 +93,23 @@ static double fourth_of(const fall *f)
     return z4 / 24;
 }
 
+/* How far it is from p's value over the patch, up to that height above and below. */
+static double reach_in(const csg_taylor *p, const csg_graph_patch *q, double height)
+{
+    const double box[3] = {q->half[0], q->half[1], height};
+    double reach = csg_taylor_bends(p, box);
+    for (int i = 0; i < 3; i++)
+        reach += fabs(p->slope[i]) * box[i];
+    return reach;
+}
+
 /* Over the patch at this height: 1, F is more than `room` all over; -1, less than -room; else 0. p:
  * around the patch's middle. */
 static int sign_at(const csg_taylor *p, const csg_graph_patch *q, double room, double z)
 {
-    const double up[3] = {0, 0, z}, box[3] = {q->half[0], q->half[1], 0};
+    const double up[3] = {0, 0, z};
     const csg_taylor at = csg_taylor_moved(p, up);
-    double reach = room + csg_taylor_bends(&at, box);
-    for (int i = 0; i < 2; i++)
-        reach += fabs(at.slope[i]) * q->half[i];
+    double reach = room + reach_in(&at, q, 0);
     return at.value > reach ? 1 : at.value < -reach ? -1 : 0;
 }
 
@@ -390,8 +398,16 @@ static bool falls_to(const csg_graph_base *g, const csg_taylor *p, const csg_gra
     double bottom = fmin(low, -g->half), top = fmax(high, g->half);
     const double up[3] = {0, 0, 0.5 * (bottom + top)};
     const double wide[3] = {q->half[0], q->half[1], 0.5 * (top - bottom)};
-    const csg_taylor at = csg_taylor_moved(p, up);
-    return fall_in(&at, wide).least > 0;
+    double change = 0, slope = p->slope[2];
+    for (int i = 0; i < 3; i++) {
+        double turned = 0, along = p->third[csg_taylor_third[i][2][2]] * up[2];
+        double own = p->bend[csg_taylor_second[i][2]] + along;
+        for (int k = 0; k < 3; k++)
+            turned += fabs(p->third[csg_taylor_third[i][k][2]]) * wide[k];
+        change += (fabs(own) + 0.5 * turned) * wide[i];
+        slope += i == 2 ? (own - 0.5 * along) * up[2] : 0;
+    }
+    return slope + change < 0;
 }
 
 /* Where the surface is about the root, which p is around. A box around it is made higher until the
@@ -424,15 +440,17 @@ csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch
     const double at[3] = {q->at[0], q->at[1], 0};
     const csg_taylor p = csg_taylor_moved(&g->p, at);
     csg_taylor root = p;
-    double rest, high;
+    double rest, high, over = reach_in(&p, q, g->half) + g->room;
+    if (fabs(p.value) > over)
+        return p.value > 0 ? CSG_COLUMNS_FULL : CSG_COLUMNS_EMPTY;
     if (!falls_to(g, &p, q, 0, 0))
         return CSG_COLUMNS_UNKNOWN;
-    if (sign_at(&p, q, g->room, g->half) > 0)
+    if (p.value > 0 && sign_at(&p, q, g->room, g->half) > 0)
         return CSG_COLUMNS_FULL;
-    if (sign_at(&p, q, g->room, -g->half) < 0)
+    if (p.value < 0 && sign_at(&p, q, g->room, -g->half) < 0)
         return CSG_COLUMNS_EMPTY;
     return expand(&root, q, &rest) && find_room(g, &root, q, rest, &high, off) &&
-                   falls_to(g, &p, q, q->z - high, q->z + high)
+                   (fabs(q->z) + high <= g->half || falls_to(g, &p, q, q->z - high, q->z + high))
                ? CSG_COLUMNS_CROSSED
                : CSG_COLUMNS_UNKNOWN;
 }
