@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * A smooth field's surface over a face of a cube, in patches. With z along the axis that it faces
- * most, turned so that the solid is below, the model's polynomial F falls with z all over the cube
- * and beyond, at least as fast as `fall`. Over a patch of the face the surface is the polynomial of
- * third order of the implicit function, but for its fourth derivatives, and the field's own surface
- * is no farther from that along z than what the model is off, over `fall`.
+ * most, turned so that the solid is below, the model's polynomial F falls with z in a patch's
+ * column and on to its root, if it does. Over the patch the surface is then the polynomial of third
+ * order of the implicit function, but for its fourth derivatives, and the field's own surface is no
+ * farther from that along z than what the model is off, over how fast F falls there: both are
+ * bounded in a box around the patch's surface alone, which is far smaller than the cube.
  */
 #ifndef CSG_MEASURE_GRAPH_PATCH_H
 #define CSG_MEASURE_GRAPH_PATCH_H
