@@ -116,14 +116,6 @@ static double square_of_third(const double t[CSG_TAYLOR_THIRD])
                 t[XZZ] * t[XZZ] + t[YZZ] * t[YZZ]);
 }
 
-double csg_taylor_reach(const csg_taylor *a, double r)
-{
-    double bend = 0.5 * sqrt(square_of_bend(a->bend)), third = sqrt(square_of_third(a->third)) / 6;
-    double all = csg_norm3(a->slope) + (bend + (third + a->quartic * r) * r) * r;
-    return (all * r + a->error) * (1 + 1e-12);
-}
-
-/* By the largest row sum where that is less: the bends of a ball are the same in two directions. */
 double csg_taylor_bends(const csg_taylor *a, const double half[3])
 {
     double b[CSG_TAYLOR_SECOND], t[CSG_TAYLOR_THIRD], along[CSG_TAYLOR_SECOND], first[3], second[3],
@@ -140,6 +132,25 @@ double csg_taylor_bends(const csg_taylor *a, const double half[3])
     return reach * (1 + 1e-12);
 }
 
+/* Half an edge of the cube. */
+static double half_of(double r)
+{
+    static const double OF_RADIUS = 0.57735026918962576; /* sqrt(1/3) */
+    return OF_RADIUS * r * (1 + 1e-12);
+}
+
+double csg_taylor_reach(const csg_taylor *a, double r)
+{
+    double half = half_of(r), square = r * r;
+    const double box[3] = {half, half, half};
+    double line = (fabs(a->slope[0]) + fabs(a->slope[1]) + fabs(a->slope[2])) * half;
+    return (line + csg_taylor_bends(a, box) + a->quartic * square * square + a->error) *
+           (1 + 1e-12);
+}
+
+/* Of bends by their norm, or by how far each row reaches, which is less where they are along an
+ * axis; the norm by the largest row sum where that is less: the bends of a ball are the same in two
+ * directions. */
 double csg_taylor_stray(const csg_taylor *a, double r)
 {
     const double *b = a->bend;
@@ -147,8 +158,9 @@ double csg_taylor_stray(const csg_taylor *a, double r)
                       fabs(b[XY]) + fabs(b[YY]) + fabs(b[YZ]),
                       fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
     double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
+    double bend = fmin(norm * r, csg_norm3(rows) * half_of(r));
     double third = 0.5 * sqrt(square_of_third(a->third));
-    return ((norm + (third + a->thrice * r) * r) * r + a->turned) * (1 + 1e-12);
+    return (bend + (third + a->thrice * r) * r * r + a->turned) * (1 + 1e-12);
 }
 
 /* ---- functions of functions --------------------------------------------------------------------
@@ -172,7 +184,10 @@ static double norm_of_slopes(const csg_taylor *const *u, int count)
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double r)
 {
     csg_taylor_change c = {.linear = norm_of_slopes(u, count)};
+    double reaches = 0;
     for (int i = 0; i < count; i++) {
+        double reach = csg_taylor_reach(u[i], r);
+        reaches += reach * reach;
         c.square += square_of_bend(u[i]->bend);
         c.cubic += square_of_third(u[i]->third);
         c.quartic += u[i]->quartic * u[i]->quartic;
@@ -187,7 +202,7 @@ csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, do
     c.turned = sqrt(c.turned);
     c.thrice = sqrt(c.thrice);
     double rest = 0.5 * c.square + (c.cubic / 6 + c.quartic * r) * r;
-    c.most = ((c.linear + rest * r) * r + c.error) * (1 + 1e-12);
+    c.most = fmin(sqrt(reaches), (c.linear + rest * r) * r + c.error) * (1 + 1e-12);
     return c;
 }
 
@@ -226,17 +241,24 @@ static double turn_of(const csg_taylor_outer *o, const csg_taylor_change *c, dou
            4 * o->fourth * d * d * d * (c->linear + s + w);
 }
 
-/* Without the constants every term has a fourth power of r at least, or a third: at |x| it is no
- * more than that share of it. What the constants add grows with r. */
+/* What is off beside the functions' own, with their constants and without, and the same of the
+ * gradient: without them every term has a fourth power of r at least, or a third, so at |x| it is
+ * no more than that share of it. What the constants add grows with r. */
+static void add_remainder(double without, double with, double turn_without, double turn_with,
+                          double r, csg_taylor *out)
+{
+    static const double ROUNDING = 1e-14 /* of differences */, MORE = 1 + 1e-12;
+    double cube = r * r * r;
+    out->quartic = (out->quartic + without / (cube * r)) * MORE;
+    out->thrice = (out->thrice + turn_without / cube) * MORE;
+    out->error = (out->error + fmax(with - without, 0) + ROUNDING * without) * MORE;
+    out->turned =
+        (out->turned + fmax(turn_with - turn_without, 0) + ROUNDING * turn_without) * MORE;
+}
+
 static void find_remainder(const csg_taylor_outer *o, const csg_taylor *const *u, int count,
                            const csg_taylor_change *c, double r, csg_taylor *out)
 {
-    static const double ROUNDING = 1e-14; /* of differences */
-    double cube = r * r * r, off = remainder_of(o, c, r, 0), turn = turn_of(o, c, r, 0, 0);
-    out->quartic = off / (cube * r);
-    out->thrice = turn / cube;
-    out->error = fmax(remainder_of(o, c, r, c->error) - off, 0) + ROUNDING * off;
-    out->turned = fmax(turn_of(o, c, r, c->error, c->turned) - turn, 0) + ROUNDING * turn;
     for (int i = 0; i < count; i++) {
         double slope = fabs(o->slope[i]);
         out->quartic += slope * u[i]->quartic;
@@ -244,10 +266,8 @@ static void find_remainder(const csg_taylor_outer *o, const csg_taylor *const *u
         out->thrice += slope * u[i]->thrice;
         out->turned += slope * u[i]->turned;
     }
-    out->quartic *= 1 + 1e-12;
-    out->error *= 1 + 1e-12;
-    out->thrice *= 1 + 1e-12;
-    out->turned *= 1 + 1e-12;
+    add_remainder(remainder_of(o, c, r, 0), remainder_of(o, c, r, c->error), turn_of(o, c, r, 0, 0),
+                  turn_of(o, c, r, c->error, c->turned), r, out);
 }
 
 /* The third derivatives of factor (l . x) (x . b x) / 2. */
@@ -375,13 +395,52 @@ bool csg_taylor_inverse(const csg_taylor *a, double r, csg_taylor *out)
     return true;
 }
 
+/* With l, s, t what a factor changes by: its first order, its second, and the rest. Of the product
+ * the polynomial has l_a l_b, l_a s_b and s_a l_b. */
+typedef struct parts {
+    double l, s, t;                   /* at most, at |x| = r */
+    double turn_l, turn_s, turn_rest; /* and their gradients */
+} parts;
+
+static parts parts_of(const csg_taylor *a, double r, double error, double turned)
+{
+    double linear = csg_norm3(a->slope), square = sqrt(square_of_bend(a->bend)),
+           cubic = sqrt(square_of_third(a->third));
+    return (parts){.l = linear * r,
+                   .s = 0.5 * square * r * r,
+                   .t = (cubic / 6 + a->quartic * r) * r * r * r + error,
+                   .turn_l = linear,
+                   .turn_s = square * r,
+                   .turn_rest = (0.5 * cubic + a->thrice * r) * r * r + turned};
+}
+
+static double rest_of_product(const parts *a, const parts *b)
+{
+    return a->l * b->t + a->t * b->l + (a->s + a->t) * (b->s + b->t);
+}
+
+static double turn_of_product(const parts *a, const parts *b)
+{
+    return a->turn_l * b->t + a->l * b->turn_rest + b->turn_l * a->t + b->l * a->turn_rest +
+           (a->turn_s + a->turn_rest) * (b->s + b->t) + (a->s + a->t) * (b->turn_s + b->turn_rest);
+}
+
 csg_taylor csg_taylor_product(const csg_taylor *a, const csg_taylor *b, double r)
 {
-    const csg_taylor *const u[2] = {a, b};
-    const csg_taylor_outer o = {
-        .value = a->value * b->value, .slope = {b->value, a->value}, .bend = {0, 1, 0}, .norm = 1};
-    csg_taylor_change change = csg_taylor_change_of(u, 2, r);
-    return csg_taylor_compose(&o, u, 2, &change, r);
+    static const int ROW[] = {0, 1, 2, 0, 0, 1}, COLUMN[] = {0, 1, 2, 1, 2, 2};
+    csg_taylor first = csg_taylor_scaled(a, b->value);
+    csg_taylor out = csg_taylor_sum(&first, a->value, b);
+    out.value = a->value * b->value;
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
+        out.bend[n] +=
+            a->slope[ROW[n]] * b->slope[COLUMN[n]] + a->slope[COLUMN[n]] * b->slope[ROW[n]];
+    add_product(1, a->slope, b->bend, out.third);
+    add_product(1, b->slope, a->bend, out.third);
+    const parts pa = parts_of(a, r, 0, 0), pb = parts_of(b, r, 0, 0),
+                qa = parts_of(a, r, a->error, a->turned), qb = parts_of(b, r, b->error, b->turned);
+    add_remainder(rest_of_product(&pa, &pb), rest_of_product(&qa, &qb), turn_of_product(&pa, &pb),
+                  turn_of_product(&qa, &qb), r, &out);
+    return out;
 }
 
 csg_taylor csg_taylor_square(const csg_taylor *a, double r)
@@ -392,7 +451,7 @@ csg_taylor csg_taylor_square(const csg_taylor *a, double r)
     return csg_taylor_compose(&o, &a, 1, &change, r);
 }
 
-/* Between 0 and the largest power in the ball. */
+/* Between 0 and the largest power in the cube. */
 static csg_taylor power_near_zero(const csg_taylor *a, const csg_taylor_change *c, double p,
                                   double r)
 {

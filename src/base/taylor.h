@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Taylor models of third order: a function in the ball |x| <= radius as its Taylor polynomial at
- * 0, and how far it may be from that (Makino and Berz 2003). What is off is a constant and a share
- * of |x|^4, since that is how a smooth function leaves its polynomial; so an integral over the ball
- * knows that it is off by little near the middle.
+ * Taylor models of third order: a function in the cube around 0 whose corners have |x| = radius, as
+ * its Taylor polynomial at 0, and how far it may be from that (Makino and Berz 2003). What is off
+ * is a constant and a share of |x|^4, since that is how a smooth function leaves its polynomial; so
+ * an integral over the cube knows that it is off by little near the middle.
  */
 #ifndef CSG_BASE_TAYLOR_H
 #define CSG_BASE_TAYLOR_H
@@ -42,7 +42,7 @@ csg_taylor csg_taylor_sum(const csg_taylor *a, double factor, const csg_taylor *
 csg_taylor csg_taylor_scaled(const csg_taylor *a, double factor);
 csg_taylor csg_taylor_raised(csg_taylor a, double by);
 
-/* How far the function may be from its value in the ball; the range. */
+/* How far the function may be from its value in the cube; the range. */
 double csg_taylor_reach(const csg_taylor *a, double radius);
 static inline double csg_taylor_least(const csg_taylor *a, double radius)
 {
@@ -59,26 +59,26 @@ double csg_taylor_bends(const csg_taylor *a, const double half[3]);
 /* Its polynomial around x; what is off stays as it is. */
 csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3]);
 
-/* How far gradients in the ball may be from the one at its centre. */
+/* How far gradients in the cube may be from the one at its centre. */
 double csg_taylor_stray(const csg_taylor *a, double radius);
 
 /* The norms of the vector of the functions' changes and of its parts, by which an outer function
  * is off: |u(x) - u(0)| <= linear |x| + square |x|^2 / 2 + cubic |x|^3 / 6 + quartic |x|^4 + error,
  * and so of its gradients. */
 typedef struct csg_taylor_change {
-    double linear, square, cubic, quartic, error, most; /* most: in the ball */
+    double linear, square, cubic, quartic, error, most; /* most: in the cube */
     double turned, thrice;
 } csg_taylor_change;
 csg_taylor_change csg_taylor_change_of(const csg_taylor *const *u, int count, double radius);
 
-/* No sum of the functions by shares of a unit vector is steeper anywhere in the ball. */
+/* No sum of the functions by shares of a unit vector is steeper anywhere in the cube. */
 double csg_taylor_steepest(const csg_taylor_change *change, double radius);
 
 /* The outer function of these. */
 csg_taylor csg_taylor_compose(const csg_taylor_outer *outer, const csg_taylor *const *u, int count,
                               const csg_taylor_change *change, double radius);
 
-/* False: it may not be smooth in the ball: the norm, the root or the divisor may be 0. */
+/* False: it may not be smooth in the cube: the norm, the root or the divisor may be 0. */
 bool csg_taylor_norm(const csg_taylor *const *u, int count, double radius, csg_taylor *out);
 bool csg_taylor_root(const csg_taylor *a, double radius, csg_taylor *out);
 bool csg_taylor_inverse(const csg_taylor *a, double radius, csg_taylor *out);

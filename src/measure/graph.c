@@ -165,8 +165,7 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_
     static const double ROUNDING = 1 + 1e-9;
     csg_graph_field g; /* not filled: it is large */
     solid s = {.with_moments = true};
-    if (!csg_graph_field_begin(&g, f, half))
-        return false;
+    csg_graph_field_begin(&g, f, half);
     for (int i = 0; i < CSG_GRAPH_SIDE * CSG_GRAPH_SIDE; i++) {
         csg_graph_patch q = csg_graph_patch_first(half, i);
         if (!add_columns(&g, &q, CSG_GRAPH_LEAST * enough, &s))
@@ -227,7 +226,8 @@ static bool add_square(const csg_taylor_pieces *faces, double half, int axis, do
     solid s = {.with_moments = false};
     csg_graph_field g; /* not filled: it is large */
     double piece = half / CSG_GRAPH_SIDE;
-    if (!csg_graph_field_begin(&g, faces, half) || g.bases[0].axes[2] == axis)
+    csg_graph_field_begin(&g, faces, half);
+    if (g.bases[0].axes[2] == axis)
         return false;
     int along = g.bases[0].axes[0] == axis ? 0 : 1;
     for (int i = 0; i < CSG_GRAPH_SIDE; i++) {

@@ -164,8 +164,7 @@ bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double 
     const csg_graph_visitor visitor = {
         .user = &e, .enough = INFINITY, .enough_turned = CSG_GRAPH_LEAST * enough, .cross = cross};
     double ignored;
-    if (!csg_graph_field_begin(&g, f, half))
-        return false;
+    csg_graph_field_begin(&g, f, half);
     const int *axes = g.bases[0].axes;
     double steep = -g.bases[0].turn * slope[axes[2]], *p = e.plane.p;
     if (!(steep > 0))

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Graphs of fields in pieces; see graph_field.h. The height of the surface in the cube, from its
- * bottom to its top, is that of a piece which is the field there: so one that is not the field
- * anywhere on its own surface, or at the bottom or top where it has none, counts for nothing.
+ * Graphs of fields in pieces; see graph_field.h. Each piece falls along the axis in its own column,
+ * and the field is continuous. The height of the surface in the cube, from its bottom to its top,
+ * is that of a piece which is the field there: so one that is not the field anywhere on its own
+ * surface, or at the bottom or top where it has none, counts for nothing.
  */
 #include "measure/graph_field.h"
 
@@ -369,7 +370,7 @@ bool csg_graph_field_pieces(const csg_tape *tape, const double c[3], double half
            csg_graph_field_keep(out, half);
 }
 
-bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half)
+void csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half)
 {
     double slope[3] = {0};
     g->count = f->count;
@@ -381,11 +382,8 @@ bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, doubl
     for (int i = 0; i < f->count; i++) {
         const csg_taylor_piece *piece = &f->of[i];
         csg_graph_patch_turn(&g->bases[i], &piece->f, slope, half);
-        if (g->of[i] == CSG_COLUMNS_CROSSED && !csg_graph_patch_begin(&g->bases[i]))
-            return false;
         g->condition_count[i] = piece->condition_count;
         for (int n = 0; n < piece->condition_count; n++)
             g->conditions[i][n] = csg_graph_patch_turned(&g->bases[i], &piece->conditions[n]);
     }
-    return true;
 }

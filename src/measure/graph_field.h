@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * A field in pieces (field/taylor/tape_taylor.h) as a graph over a face of a cube: all of them fall
- * along one axis, so the field does. Its surface is one piece's at every point of the face; a patch
- * over which more than one may be it is halved, and in the end what they differ by is left open.
+ * A field in pieces (field/taylor/tape_taylor.h) as a graph over a face of a cube: those that
+ * may be the field over a patch fall along one axis there. Its surface is one piece's at every
+ * point of the face; a patch over which more than one may be it is halved, and in the end what they
+ * differ by is left open.
  */
 #ifndef CSG_MEASURE_GRAPH_FIELD_H
 #define CSG_MEASURE_GRAPH_FIELD_H
@@ -28,9 +29,8 @@ bool csg_graph_field_keep(csg_taylor_pieces *f, double half);
 /* Whether all of the cube is in the piece's solid, or outside of it, if that is told. */
 csg_graph_columns csg_graph_field_state(const csg_taylor *f, double half);
 
-/* For pieces that are valid in the ball around the cube and stay where they are. False: the surface
- * may not be a graph. */
-bool csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half);
+/* For pieces that are valid in the cube and stay where they are. */
+void csg_graph_field_begin(csg_graph_field *g, const csg_taylor_pieces *f, double half);
 
 typedef struct csg_graph_visitor {
     void *user;

@@ -6,9 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Half edges from the cube's centre, up to which roots are looked for. */
-static const double REACH = 3.5;
-
 enum { CORNERS = 4 };
 
 static void order_axes(csg_graph_base *g, const double slope[3])
@@ -40,59 +37,80 @@ csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f)
     return p;
 }
 
-/* With bounds over the cube and up to REACH: of the gradient's parts, of the Hessian H, of its last
- * row and of the third derivatives T. Along a unit vector u of the face, with q the tangent's
- * length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall and
- * |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall. False: F may not fall. */
-bool csg_graph_patch_begin(csg_graph_base *g)
+/* Of the polynomial in a box. */
+typedef struct fall {
+    double least;         /* how fast it falls with z, at least */
+    double across[2];     /* its gradient over the face, at most */
+    double bent, row, up; /* |H|, |H_z|, |H_zz|, H the second derivatives */
+    double third;
+} fall;
+
+/* p: around the middle of the box. */
+static fall fall_in(const csg_taylor *p, const double wide[3])
 {
-    static const double LEAST = 0.25;
-    const csg_taylor *p = &g->p;
-    const double wide[3] = {g->half, g->half, REACH * g->half};
-    double bend[3][3], gradient = 0, row = 0, all = 0, third = 0, change[3];
+    fall out = {.third = 0};
+    double change[3], all = 0, row = 0;
     for (int i = 0; i < 3; i++) {
         change[i] = 0;
         for (int j = 0; j < 3; j++) {
-            double turned = 0, own = fabs(p->bend[csg_taylor_second[i][j]]);
+            double turned = 0, own = fabs(p->bend[csg_taylor_second[i][j]]), bend;
             for (int k = 0; k < 3; k++) {
                 double t = fabs(p->third[csg_taylor_third[i][j][k]]);
                 turned += t * wide[k];
-                third += t * t;
+                out.third += t * t;
             }
             change[i] += (own + 0.5 * turned) * wide[j];
-            bend[i][j] = own + turned;
-            all += bend[i][j] * bend[i][j];
+            bend = own + turned;
+            all += bend * bend;
+            row += i == 2 ? bend * bend : 0;
+            out.up = bend;
         }
     }
-    double steep = -p->slope[2];
-    g->fall = steep - change[2];
-    if (!(g->fall > LEAST * steep))
-        return false;
+    out.least = -p->slope[2] - change[2];
     for (int i = 0; i < 2; i++)
-        gradient += (fabs(p->slope[i]) + change[i]) * (fabs(p->slope[i]) + change[i]);
-    for (int i = 0; i < 3; i++)
-        row += bend[2][i] * bend[2][i];
-    double q = sqrt(1 + gradient / (g->fall * g->fall)), fall = g->fall;
-    g->tangent = q;
-    g->bent = sqrt(all);
-    row = sqrt(row);
-    third = sqrt(third);
-    double z2 = g->bent * q * q / fall, z3 = (third * q * q * q + 3 * row * q * z2) / fall;
-    double z4 = (6 * third * q * q * z2 + 3 * bend[2][2] * z2 * z2 + 4 * row * q * z3) / fall;
-    g->fourth = z4 / 24;
-    return isfinite(z4);
+        out.across[i] = fabs(p->slope[i]) + change[i];
+    out.bent = sqrt(all);
+    out.row = sqrt(row);
+    out.third = sqrt(out.third);
+    return out;
 }
 
-/* Over the patch at this height: 1, F is more than `room` all over; -1, less than -room; else 0. */
-static int sign_at(const csg_graph_base *g, const csg_graph_patch *q, double z)
+/* At least the surface's length along a direction of the face. */
+static double tangent_of(const fall *f)
 {
-    const double at[3] = {q->at[0], q->at[1], z};
-    const csg_taylor p = csg_taylor_moved(&g->p, at);
-    const double box[3] = {q->half[0], q->half[1], 0};
-    double reach = g->room + csg_taylor_bends(&p, box);
-    for (int i = 0; i < 2; i++)
-        reach += fabs(p.slope[i]) * q->half[i];
-    return p.value > reach ? 1 : p.value < -reach ? -1 : 0;
+    double square = f->across[0] * f->across[0] + f->across[1] * f->across[1];
+    return sqrt(1 + square / (f->least * f->least));
+}
+
+/* A 24th of the implicit function's fourth derivatives, at most: along a unit vector of the face,
+ * with q the tangent's length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall
+ * and |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall, T the third ones. */
+static double fourth_of(const fall *f)
+{
+    double q = tangent_of(f), z2 = f->bent * q * q / f->least;
+    double z3 = (f->third * q * q * q + 3 * f->row * q * z2) / f->least;
+    double z4 = (6 * f->third * q * q * z2 + 3 * f->up * z2 * z2 + 4 * f->row * q * z3) / f->least;
+    return z4 / 24;
+}
+
+/* How far it is from p's value over the patch, up to that height above and below. */
+static double reach_in(const csg_taylor *p, const csg_graph_patch *q, double height)
+{
+    const double box[3] = {q->half[0], q->half[1], height};
+    double reach = csg_taylor_bends(p, box);
+    for (int i = 0; i < 3; i++)
+        reach += fabs(p->slope[i]) * box[i];
+    return reach;
+}
+
+/* Over the patch at this height: 1, F is more than `room` all over; -1, less than -room; else 0. p:
+ * around the patch's middle. */
+static int sign_at(const csg_taylor *p, const csg_graph_patch *q, double room, double z)
+{
+    const double up[3] = {0, 0, z};
+    const csg_taylor at = csg_taylor_moved(p, up);
+    double reach = room + reach_in(&at, q, 0);
+    return at.value > reach ? 1 : at.value < -reach ? -1 : 0;
 }
 
 /* T(w_i, w_j, w_k), w being the tangents (1, 0, g_0), (0, 1, g_1). */
@@ -138,29 +156,25 @@ static void find_derivatives(const csg_taylor *p, csg_graph_patch *q)
     }
 }
 
-/* The implicit function at the patch's middle. False: its root is too far. *off: of the height. */
-static bool expand(const csg_graph_base *g, csg_graph_patch *q, double *off)
+/* The implicit function at the patch's middle, of p, which becomes the polynomial around the root.
+ * False: there is no root. *rest: of the polynomial. */
+static bool expand(csg_taylor *p, csg_graph_patch *q, double *rest)
 {
     enum { STEPS = 3 };
-    const double at[3] = {q->at[0], q->at[1], 0};
-    csg_taylor p = csg_taylor_moved(&g->p, at);
-    double a = p.bend[csg_taylor_second[2][2]], b = p.slope[2], c = p.value;
-    double t = p.third[csg_taylor_third[2][2][2]], under = b * b - 2 * a * c;
-    if (!(under > 0))
+    double a = p->bend[csg_taylor_second[2][2]], b = p->slope[2], c = p->value;
+    double t = p->third[csg_taylor_third[2][2][2]], under = b * b - 2 * a * c;
+    if (!(under > 0 && b < 0))
         return false;
-    double z = 2 * c / (sqrt(under) - b), rest = 0; /* b < 0 */
+    double z = 2 * c / (sqrt(under) - b);
     for (int n = 0; n <= STEPS; n++) {
-        rest = c + (b + (0.5 * a + t / 6 * z) * z) * z;
-        z -= n < STEPS ? rest / (b + (a + 0.5 * t * z) * z) : 0;
+        *rest = c + (b + (0.5 * a + t / 6 * z) * z) * z;
+        z -= n < STEPS ? *rest / (b + (a + 0.5 * t * z) * z) : 0;
     }
-    q->z = z;
-    *off = fabs(rest) / g->fall;
-    if (!(fabs(z) < REACH * g->half) || !(*off < 1e-6 * g->half))
-        return false;
     const double up[3] = {0, 0, z};
-    p = csg_taylor_moved(&p, up);
-    find_derivatives(&p, q);
-    return true;
+    q->z = z;
+    *p = csg_taylor_moved(p, up);
+    find_derivatives(p, q);
+    return isfinite(z);
 }
 
 /* ---- parts of a patch --------------------------------------------------------------------------
@@ -341,47 +355,104 @@ bool csg_graph_patch_is_whole(const csg_graph_base *g, const csg_graph_patch *q,
 /* ---- what columns are --------------------------------------------------------------------------
  */
 
-/* How far the surface may be from one of the first patches: by the fourth derivatives, and by what
- * the model is off. Where that is less than half of the polynomial's own farthest root all over the
- * cube, no root of the field is farther than half as far again, and what the model is off there
- * counts alone. Means over a square: |x|^4 is no more than its largest square times the mean of
- * |x|^2; that of |d|^4 is 0.6223 half^4. p = -(f_x, f_y) / f_z is off by (1 + |p|) times what the
- * field's gradient is, over f_z; as much as the surface's place makes of the bends; and by the
- * fourth derivatives. False: the polynomial may leave the region where its derivatives are bounded.
- */
-static bool find_room(const csg_graph_base *g, const csg_graph_patch *q, double off,
-                      csg_graph_room *out)
+/* How far the polynomial's surface may be from the patch's height. */
+static double reach_of(const csg_graph_patch *q)
+{
+    return csg_graph_patch_line(q) + csg_graph_patch_bend(q) + csg_graph_patch_third(q);
+}
+
+/* How far the surface may be from one of the first patches, where the polynomial falls like f: by
+ * the fourth derivatives, and by what the model is off. Where that is less than half of the
+ * polynomial's own farthest root all over the cube, no root of the field is farther than half as
+ * far again, and what the model is off there counts alone. Means over a square: |x|^4 is no more
+ * than its largest square times the mean of |x|^2; that of |d|^4 is 0.6223 half^4. p = -(f_x, f_y)
+ * / f_z is off by (1 + |p|) times what the field's gradient is, over f_z; as much as the surface's
+ * place makes of the bends; and by the fourth derivatives. */
+static csg_graph_room room_of(const csg_graph_base *g, const csg_graph_patch *q, const fall *f,
+                              double off)
 {
     static const double MEAN = 0.6223, MOST = 4, MOST_CUBE = 2.8285;
-    const csg_taylor *f = g->f;
-    double h = q->half[0], whole = g->fourth * h * h * h * h;
-    double far = fabs(q->z) + csg_graph_patch_line(q) + csg_graph_patch_bend(q) +
-                 csg_graph_patch_third(q) + MOST * whole + off;
-    double z = g->room < 0.5 * far * g->fall ? fmin(1.5 * far, g->half) : g->half;
+    const csg_taylor *of = g->f;
+    csg_graph_room out;
+    double h = q->half[0], fourth = fourth_of(f), whole = fourth * h * h * h * h;
+    double far = fabs(q->z) + reach_of(q) + MOST * whole + off;
+    double z = g->room < 0.5 * far * f->least ? fmin(1.5 * far, g->half) : g->half;
     double most = z * z, mean = z * z + 2.0 / 3 * h * h, half = g->half;
     for (int i = 0; i < 2; i++) {
         most += (fabs(q->at[i]) + h) * (fabs(q->at[i]) + h);
         mean += q->at[i] * q->at[i];
     }
-    out->most = (f->error + f->quartic * most * most) / g->fall + MOST * whole + off;
-    out->mean = (f->error + f->quartic * most * mean) / g->fall + MEAN * whole + off;
-    double turned = f->turned + f->thrice * sqrt(27) * half * half * half;
-    out->turned = g->fall > turned ? turned / (g->fall - turned) : INFINITY;
-    out->turned = 1.4143 * g->tangent * (out->turned + g->bent * out->most / g->fall) +
-                  MOST_CUBE * 4 * g->fourth * h * h * h;
-    return far < REACH * g->half;
+    out.most = (of->error + of->quartic * most * most) / f->least + MOST * whole + off;
+    out.mean = (of->error + of->quartic * most * mean) / f->least + MEAN * whole + off;
+    double turned = of->turned + of->thrice * sqrt(27) * half * half * half;
+    out.turned = f->least > turned ? turned / (f->least - turned) : INFINITY;
+    out.turned = 1.4143 * tangent_of(f) * (out.turned + f->bent * out.most / f->least) +
+                 MOST_CUBE * 4 * fourth * h * h * h;
+    return out;
+}
+
+/* Does the polynomial fall from the cube to these heights? p: around the patch's middle. */
+static bool falls_to(const csg_graph_base *g, const csg_taylor *p, const csg_graph_patch *q,
+                     double low, double high)
+{
+    double bottom = fmin(low, -g->half), top = fmax(high, g->half);
+    const double up[3] = {0, 0, 0.5 * (bottom + top)};
+    const double wide[3] = {q->half[0], q->half[1], 0.5 * (top - bottom)};
+    double change = 0, slope = p->slope[2];
+    for (int i = 0; i < 3; i++) {
+        double turned = 0, along = p->third[csg_taylor_third[i][2][2]] * up[2];
+        double own = p->bend[csg_taylor_second[i][2]] + along;
+        for (int k = 0; k < 3; k++)
+            turned += fabs(p->third[csg_taylor_third[i][k][2]]) * wide[k];
+        change += (fabs(own) + 0.5 * turned) * wide[i];
+        slope += i == 2 ? (own - 0.5 * along) * up[2] : 0;
+    }
+    return slope + change < 0;
+}
+
+/* Where the surface is about the root, which p is around. A box around it is made higher until the
+ * polynomial's surface cannot leave it but through its sides, and the field's is in it, too. False:
+ * it cannot. */
+static bool find_room(const csg_graph_base *g, const csg_taylor *p, const csg_graph_patch *q,
+                      double rest, double *high, csg_graph_room *out)
+{
+    enum { TRIES = 3 };
+    static const double MORE = 1.1, LEAST = 0x1p-6, HIGHEST = 4, CLOSE = 1e-6;
+    double needed = reach_of(q);
+    for (int n = 0; n < TRIES; n++) {
+        *high = MORE * needed + LEAST * g->half;
+        const double wide[3] = {q->half[0], q->half[1], *high};
+        const fall f = fall_in(p, wide);
+        if (!(f.least > 0 && *high < HIGHEST * g->half))
+            return false;
+        double off = fabs(rest) / f.least;
+        *out = room_of(g, q, &f, off);
+        needed = (f.across[0] * q->half[0] + f.across[1] * q->half[1] + g->room) / f.least + off;
+        if (needed <= *high)
+            return off < CLOSE * g->half && isfinite(out->most);
+    }
+    return false;
 }
 
 csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch *q,
                                         csg_graph_room *off)
 {
-    double rest;
-    if (sign_at(g, q, g->half) > 0)
+    const double at[3] = {q->at[0], q->at[1], 0};
+    const csg_taylor p = csg_taylor_moved(&g->p, at);
+    csg_taylor root = p;
+    double rest, high, over = reach_in(&p, q, g->half) + g->room;
+    if (fabs(p.value) > over)
+        return p.value > 0 ? CSG_COLUMNS_FULL : CSG_COLUMNS_EMPTY;
+    if (!falls_to(g, &p, q, 0, 0))
+        return CSG_COLUMNS_UNKNOWN;
+    if (p.value > 0 && sign_at(&p, q, g->room, g->half) > 0)
         return CSG_COLUMNS_FULL;
-    if (sign_at(g, q, -g->half) < 0)
+    if (p.value < 0 && sign_at(&p, q, g->room, -g->half) < 0)
         return CSG_COLUMNS_EMPTY;
-    return expand(g, q, &rest) && find_room(g, q, rest, off) ? CSG_COLUMNS_CROSSED
-                                                             : CSG_COLUMNS_UNKNOWN;
+    return expand(&root, q, &rest) && find_room(g, &root, q, rest, &high, off) &&
+                   (fabs(q->z) + high <= g->half || falls_to(g, &p, q, q->z - high, q->z + high))
+               ? CSG_COLUMNS_CROSSED
+               : CSG_COLUMNS_UNKNOWN;
 }
 
 void csg_graph_patch_turn(csg_graph_base *g, const csg_taylor *f, const double slope[3],

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * A smooth field's surface over a face of a cube, in patches. With z along the axis that it faces
- * most, turned so that the solid is below, the model's polynomial F falls with z all over the cube
- * and beyond, at least as fast as `fall`. Over a patch of the face the surface is the polynomial of
- * third order of the implicit function, but for its fourth derivatives, and the field's own surface
- * is no farther from that along z than what the model is off, over `fall`.
+ * most, turned so that the solid is below, the model's polynomial F falls with z in a patch's
+ * column and on to its root, if it does. Over the patch the surface is then the polynomial of third
+ * order of the implicit function, but for its fourth derivatives, and the field's own surface is no
+ * farther from that along z than what the model is off, over how fast F falls there: both are
+ * bounded in a box around the patch's surface alone, which is far smaller than the cube.
  */
 #ifndef CSG_MEASURE_GRAPH_PATCH_H
 #define CSG_MEASURE_GRAPH_PATCH_H
@@ -43,10 +44,8 @@ typedef struct csg_graph_base {
     csg_taylor p; /* the polynomial, z last */
     int axes[3];  /* of the field, which become x, y and z */
     double turn;  /* z is that times its axis */
-    double half, fall;
-    double fourth;        /* a 24th of the implicit function's fourth derivatives, at most */
-    double room;          /* the model is off by no more anywhere in the cube */
-    double tangent, bent; /* at least the surface's length along a direction of the face; |H| */
+    double half;
+    double room; /* the model is off by no more anywhere in the cube */
 } csg_graph_base;
 
 /* What the patch's columns are. */
@@ -68,9 +67,6 @@ typedef struct csg_graph_rule {
  * slope is steepest. */
 void csg_graph_patch_turn(csg_graph_base *g, const csg_taylor *f, const double slope[3],
                           double half);
-
-/* How it falls, of one that is turned. False: F may not fall. */
-bool csg_graph_patch_begin(csg_graph_base *g);
 
 /* Another model in the same axes. */
 csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f);

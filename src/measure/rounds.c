@@ -300,7 +300,7 @@ typedef struct course {
 
 static void take_course(course *c, double share, double open)
 {
-    static const double LEAST = 0.4, MOST = 0.75, LEAST_LEFT = 0.1, MOST_LEFT = 0.75;
+    static const double LEAST = 0.4, MOST = 0.75, LEAST_LEFT = 0.02, MOST_LEFT = 0.75;
     if (c->open > 0 && share < c->share && open < c->open)
         c->falls = fmin(fmax(csg_log(open / c->open) / csg_log(share / c->share), LEAST), MOST);
     if (c->divided > 0)
@@ -351,7 +351,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
     enum { VAIN = 2 };                 /* rounds that are not: rounding is what is left */
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
-    course so_far = {.falls = 0.5, .left = 0.15};
+    course so_far = {.falls = 0.5, .left = 0.05};
     double best = 0;
     int vain = 0;
     for (bool more = true; more && status == CSGM_OK;) {

@@ -44,6 +44,12 @@ CLOSED = {
     "rotate([20, 30, 40]) cube([10, 20, 30], center = true);": (6000, (0, 0, 0), None, None),
     "scale([1, 2, 3]) sphere(5);": (1000 * PI, (0, 0, 0), (1000 * PI / 5 * 325, 1000 * PI / 5 * 125), (-5, -10, -15, 5, 10, 15)),
 }
+# part: cubes that `--to 3e-4` takes, which are the same on any machine
+CUBES = {
+    "hook": 128927, "mug": 114803, "cable_clip": 150949, "gear_knob": 156863, "bracket": 213573,
+    "phone_stand": 190829, "bottle": 451563, "spool": 285884, "pipe_manifold": 505439, "chess_pawn": 459838,
+}
+PARTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenes", "parts")
 
 
 def write(folder, name, text):
@@ -233,6 +239,15 @@ class Measure(unittest.TestCase):
         result = cli.run("measure", path, "--part", "lit")
         self.assertEqual(result.returncode, 1)
         self.assertIn('did you mean "lid"', result.stderr)
+
+    def test_parts_take_no_more_cubes_than_they_did(self):
+        """What makes a field rougher, or a model of it worse, is seen here long before it takes minutes."""
+        for name, cubes in CUBES.items():
+            with self.subTest(name):
+                result = cli.run("measure", os.path.join(PARTS, name + ".txt"), "--to", 3e-4, "--json")
+                found = json.loads(result.stdout)
+                self.assertTrue(found["reached"])
+                self.assertLess(found["cubes"], 1.2 * cubes)
 
     def test_each_part(self):
         scene = 'part("box") color("red") cube(10);\npart("lid") translate([0, 0, 20]) cube([10, 10, 2]);\n'

@@ -299,7 +299,7 @@ static bool combine_signs(csg_taylor_walk *w, const csg_tape_node *node)
  * does not: in a ball that is not small beside w they are no graph. */
 static bool prefers_squares(const csg_taylor_walk *w, const csg_tape_node *node)
 {
-    static const double SMALL = 0.2;
+    static const double SMALL = 0.6;
     const csg_taylor_operand *of = &w->stack[w->top - node->arity];
     double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, apart = 0, bent = 0;
@@ -387,6 +387,32 @@ static bool fillet_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_
         a, b, 0.5 * turn * rest.value * inverse.value * difference.value / root.value, out);
     *out = csg_taylor_raised(*out, turn * r);
     csg_taylor_walk_add_length(r, out);
+    return true;
+}
+
+/* Where nothing but its sign matters: with s = (a + b) / 2 + r positive all over the ball a fillet
+ * has the sign of
+ *   d s^2 + (2 - d) (x^2 - 2 d r^2) / 4
+ * over 2 d s, which of planes is a polynomial of second order. False: s may be negative. */
+static bool fillet_sign(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *b,
+                        const csg_taylor *d, double r, double turn, csg_taylor *out)
+{
+    static const double OF_LENGTH = 0x1p-24, OF_SHARES = 0x1p-22;
+    csg_taylor s = csg_taylor_sum(a, 1, b), x = csg_taylor_sum(a, -1, b);
+    s = csg_taylor_raised(csg_taylor_scaled(&s, 0.5 * turn), r);
+    double most_s = csg_taylor_walk_most(w, &s), most_d = csg_taylor_walk_most(w, d);
+    if (!(csg_taylor_walk_least(w, &s) > 0) || !(d->value > 0))
+        return false;
+    const csg_taylor rest = csg_taylor_raised(csg_taylor_scaled(d, -1), 2);
+    csg_taylor squares = csg_taylor_square(&s, w->radius), under = csg_taylor_square(&x, w->radius);
+    squares = csg_taylor_product(&squares, d, w->radius);
+    under = csg_taylor_sum(&under, -2 * r * r, d);
+    under = csg_taylor_product(&under, &rest, w->radius);
+    double scale = 0.5 / (d->value * s.value);
+    *out = csg_taylor_sum(&squares, 0.25, &under);
+    *out = csg_taylor_scaled(out, turn * scale);
+    out->error += OF_LENGTH * r * scale * most_d * 2 * (most_s + r);
+    out->turned += OF_SHARES * scale * 2 * (most_d * r + (most_s + r) * r * csg_norm3(d->slope));
     return true;
 }
 
@@ -527,9 +553,10 @@ static bool is_larger(const csg_taylor_walk *w, const csg_taylor *a, const csg_t
 /* Where a plane ends the fillet of two it must be above both, or one of them decides again. */
 static bool blend_pair(const csg_taylor_walk *w, const csg_tape_node *node,
                        const csg_taylor_operand *of, const uint32_t pair[2], const csg_taylor *d,
-                       double r, double turn, csg_taylor *out)
+                       double r, double turn, bool signs, csg_taylor *out)
 {
-    if (!fillet_two(w, &of[pair[0]].f, &of[pair[1]].f, d, r, turn, out))
+    const csg_taylor *a = &of[pair[0]].f, *b = &of[pair[1]].f;
+    if (!(signs && fillet_sign(w, a, b, d, r, turn, out)) && !fillet_two(w, a, b, d, r, turn, out))
         return false;
     int ended = find_end(w, node, of, pair, turn, out);
     for (int i = 0; i < 2 && ended > 0; i++)
@@ -566,7 +593,8 @@ bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool 
         how = find_meeting(w, a, &of[order[1]], r, turn, &d, &more);
     else if (count > 1) /* the larger one, with a crease between them */
         how = is_larger(w, &a->f, &of[order[1]].f, turn) ? FIRST : UNKNOWN;
-    if (how == UNKNOWN || (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, &out)))
+    if (how == UNKNOWN ||
+        (how == BLENDING && !blend_pair(w, node, of, order, &d, r, turn, signs, &out)))
         return false;
     of[0] = how == SECOND ? of[order[1]] : *a;
     if (how == BLENDING) {

@@ -94,8 +94,9 @@ double csg_taylor_walk_apart(const csg_taylor_walk *w, const csg_taylor *d)
 
 void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double apart)
 {
+    static const double STEEPEST = 16; /* 9 sqrt(3), of what is of third order in a cube */
     f->error += apart;
-    f->turned += 2 * apart / w->radius;
+    f->turned += STEEPEST * apart / w->radius;
 }
 
 void csg_taylor_walk_add_length(double length, csg_taylor *f)

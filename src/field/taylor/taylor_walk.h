@@ -77,7 +77,8 @@ void csg_taylor_walk_require(csg_taylor_walk *w, const csg_taylor *g, double off
  * they are not. */
 double csg_taylor_walk_apart(const csg_taylor_walk *w, const csg_taylor *d);
 
-/* And their gradients, by no more than twice that over the radius. */
+/* And their gradients, of third order at most, by no more than sixteen times that over the radius.
+ */
 void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double apart);
 
 /* What a float makes of a blend's length: values move by no more than it does, gradients' shares by

@@ -57,7 +57,7 @@ bool csg_smooth_norm(const csg_smooth_leaf *l, const csg_smooth *const *u, int c
 static bool take_square(const csg_smooth_leaf *l, double t, const csg_smooth *const *u, int count,
                         csg_smooth *out)
 {
-    static const double SHARE = 0.2; /* of t: in a larger ball gradients turn too far for a graph */
+    static const double SHARE = 0.6; /* of t: in a larger ball gradients turn too far for a graph */
     csg_taylor sum = csg_taylor_constant(-t * t);
     if (!(l->reach < SHARE * t))
         return false;
