@@ -77,6 +77,22 @@ intersection(blend = 0.3) {
         self.assertLess(stats["mesh"]["triangles"], 800)
         self.assertEqual(stats["mesh"]["euler"], 2)
 
+    def test_edges_narrower_than_the_tolerance(self):
+        """A chamfer of a sixth of it costs no more than a sharp edge; before, the cells along it were divided down to the tolerance."""
+        before = [self.stats(f"intersection(blend = {blend}) {{ cylinder(h = 80, r = 40, center = true); plane([0.1, 0, 1], 10.3); }}")
+                  for blend in ("0", "chamfer(0.01)")]
+        self.assertEqual([stats["lattice"]["tolerance"] for stats in before], [0.0625, 0.0625])
+        sharp, chamfered = (stats["mesh"]["triangles_before"] for stats in before)
+        self.assertLess(chamfered, 1.5 * sharp)
+        self.assertEqual(before[1]["features"]["left_smooth"], 0)
+
+    def test_dent_in_a_turned_block(self):
+        """1.2 T wide and deep; steps through the corners of its cube hardly leave one of its faces."""
+        block = "union() { cube([8, 6, 2], center = true); translate([-2.914121, 0.696130, 1.087398]) sphere(0.0145663); }"
+        dent = "translate([-1.654001, -0.559832, 1]) rotate([0, 0, 35.503]) cube([0.0093528, 0.0093528, 0.0187057], center = true);"
+        counts = [self.stats(f"rotate([70.676, 125.851, -63.5]) difference() {{ {block} {cut} }}")["mesh"]["triangles"] for cut in ("", dent)]
+        self.assertGreater(counts[1], counts[0] + 9)
+
     def test_rounded_edges_pass_through_large_cells(self):
         """By three vertices in a face where they bend; with one, 17 616 triangles were to be thinned out."""
         stats = self.stats("cube([30.3, 21.3, 10.7], round = 1.1);", "--quality", "normal")
