@@ -390,7 +390,7 @@ static bool fillet_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_
     return true;
 }
 
-/* Where nothing but its sign matters: with s = (a + b) / 2 + r positive all over the ball a fillet
+/* Where nothing but its sign matters: with s = (a + b) / 2 + r positive all over the cube a fillet
  * has the sign of
  *   d s^2 + (2 - d) (x^2 - 2 d r^2) / 4
  * over 2 d s, which of planes is a polynomial of second order. False: s may be negative. */

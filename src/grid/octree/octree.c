@@ -215,11 +215,10 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
     count_samples(self, tape);
     csg_scan scan = {.span = (float)(w->lattice->cell_size * (double)tape->lipschitz)};
     csg_beads *beads = w->options.beads ? &self->beads : NULL;
-    bool scans_first = csg_scan_comes_first(tape);
-    self->samples->scan =
-        w->scans && (scans_first || csg_scan_is_due(w->lattice, w->options.margin, at, tape))
-            ? &scan
-            : NULL;
+    bool scans_first = w->scans && csg_scan_comes_first(tape);
+    bool scans =
+        scans_first || (w->scans && csg_scan_is_due(w->lattice, w->options.margin, at, tape));
+    self->samples->scan = scans ? &scan : NULL;
     bool crossed = csg_block_sample(&self->candidate, w->kernel, tape, w->lattice, at, beads,
                                     self->samples, self->scratch, self->scratch_floats);
     if (scan.doubt > 0 && scans_first && !csg_scan_is_due(w->lattice, w->options.margin, at, tape))

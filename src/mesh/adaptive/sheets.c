@@ -365,7 +365,7 @@ void csg_sheets_meet_in_faces(csg_sheet_probe *p, csg_face_crease *faces, int co
 /* ---- in a cell ---------------------------------------------------------------------------------
  */
 
-/* Of all vertices, or of those on creases, if there are any. */
+/* Of all vertices, or of those on creases, of which there have to be some. */
 static csg_vec3 middle_of(const csg_polygon *polygon, bool of_creases)
 {
     csg_vec3 sum = {0, 0, 0};
