@@ -93,6 +93,14 @@ intersection(blend = 0.3) {
         counts = [self.stats(f"rotate([70.676, 125.851, -63.5]) difference() {{ {block} {cut} }}")["mesh"]["triangles"] for cut in ("", dent)]
         self.assertGreater(counts[1], counts[0] + 9)
 
+    def test_bump_on_a_turned_block(self):
+        """1.27 T wide and high: cells have a vertex 0.7 T above its foot, which thinning out takes away unless the places seen
+        on its top stay near."""
+        bump = "translate([1.756590, -2.260697, 1]) rotate([0, 0, 25.920]) translate([0, 0, 0.0049420]) cube([0.0099037, 0.0099037, 0.0099236], center = true);"
+        scene = "rotate([9.596, -119.739, -89.344]) union() {{ cube([8, 6, 2], center = true); translate([3.422717, -2.110289, 1.118183]) sphere(0.0196972); {} }}"
+        counts = [self.stats(scene.format(text))["mesh"]["triangles"] for text in ("", bump)]
+        self.assertGreater(counts[1], counts[0])
+
     def test_rounded_edges_pass_through_large_cells(self):
         """By three vertices in a face where they bend; with one, 17 616 triangles were to be thinned out."""
         stats = self.stats("cube([30.3, 21.3, 10.7], round = 1.1);", "--quality", "normal")

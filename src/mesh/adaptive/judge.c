@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "mesh/adaptive/hunt.h"
-#include "mesh/remesh/triangle.h"
 
 enum { E = CSG_BRICK_EDGE };
 
@@ -268,87 +267,49 @@ typedef struct brick_work {
     csg_brick *brick;
     csg_judge_room *room;
     csg_sheet_probe probe;
-    const csg_hunted *hunted;
     double cell;
     bool is_small; /* sheets may fail to meet */
     bool out_of_memory;
     double least; /* height of triangles that must look outwards */
     unsigned bad; /* cells that are to be divided */
+    csg_cover cover;
 } brick_work;
 
 /* Keeps the triangles of a cell that is good. */
 static void keep_triangles(csg_judge_room *room, unsigned cell)
 {
-    room->first_triangle[cell] = room->triangle_count;
+    csg_brick_triangles *to = &room->triangles;
+    to->first[cell] = to->count;
     for (int k = room->first_piece[cell]; k < room->end_piece[cell]; k++)
         for (int t = 0; t < csg_cut_triangle_count(&room->pieces[k]); t++) {
             int corner[3];
-            if (room->triangle_count == CSG_JUDGE_MOST_TRIANGLES)
+            if (to->count == CSG_COVER_MOST_TRIANGLES)
                 return;
-            csg_cut_triangle(&room->pieces[k], t, corner, room->triangles[room->triangle_count++]);
+            csg_cut_triangle(&room->pieces[k], t, corner, to->at[to->count++]);
         }
-    room->end_triangle[cell] = room->triangle_count;
+    to->end[cell] = to->count;
 }
 
-static bool is_near_side(const csg_cell_box *box, csg_vec3 p, double reach)
+/* Looks for what is hidden in cells, and for the surface away from their triangles. Those that are
+ * to be divided. */
+static uint8_t search(brick_work *w, const float *f, uint8_t cells)
 {
-    const double at[3] = {p.x, p.y, p.z};
-    for (int axis = 0; axis < 3; axis++)
-        if (at[axis] - box->low[axis] < reach || box->high[axis] - at[axis] < reach)
-            return true;
-    return false;
-}
-
-static bool is_near_triangles(const csg_judge_room *room, uint32_t first, uint32_t end, csg_vec3 at,
-                              double reach)
-{
-    double weights[3];
-    for (uint32_t t = first; t < end; t++)
-        if (csg_triangle_nearest((const csg_vec3 *)room->triangles[t], at, weights) <=
-            reach * reach)
-            return true;
-    return false;
-}
-
-static void note_unsure(brick_work *w, csg_vec3 at)
-{
+    const csg_judge *judge = w->judge;
     csg_judge_room *room = w->room;
-    if (csg_memory_reserve(w->judge->memory, (void **)&room->unsure, &room->unsure_capacity,
-                           room->unsure_count + 1, sizeof *room->unsure))
-        room->unsure[room->unsure_count++] = at;
-    else
+    csg_cover *cover = &w->cover;
+    csg_hunted hunted;
+    unsigned hidden = csg_hunt(&w->probe, w->bricks, w->brick, judge->tolerance, f, cells, &hunted);
+    csg_cover_find(&room->triangles, w->bricks, w->brick, &hunted, judge->tolerance,
+                   cells & (uint8_t)~hidden, cover);
+    size_t count = room->unsure_count + (size_t)cover->unsure_count;
+    if (!csg_memory_reserve(judge->memory, (void **)&room->unsure, &room->unsure_capacity, count,
+                            sizeof *room->unsure)) {
         w->out_of_memory = true;
-}
-
-/* The cells in which the surface was found away from triangles. Beside cells that are not searched,
- * and beside other bricks, it may be near triangles that are not there yet: that is seen later. */
-static uint8_t find_uncovered(brick_work *w, uint8_t cells)
-{
-    double tolerance = w->judge->tolerance;
-    const csg_judge_room *room = w->room;
-    bool all = cells == CSG_BRICK_ALL_CELLS;
-    unsigned uncovered = 0;
-    for (int i = 0; i < w->hunted->count; i++) {
-        csg_vec3 at = w->hunted->at[i];
-        unsigned cell = w->hunted->cell[i];
-        csg_cell_box box;
-        for (int axis = 0; axis < 3; axis++) {
-            uint32_t low = all ? 0 : cell >> axis & 1;
-            box.low[axis] = (double)csg_brick_coordinate(w->bricks, w->brick, axis, low);
-            box.high[axis] =
-                (double)csg_brick_coordinate(w->bricks, w->brick, axis, low + (all ? E : 1));
-        }
-        if (!(cells >> cell & 1) ||
-            is_near_triangles(room, room->first_triangle[cell], room->end_triangle[cell], at,
-                              tolerance) ||
-            is_near_triangles(room, 0, room->triangle_count, at, tolerance))
-            continue;
-        if (is_near_side(&box, at, tolerance))
-            note_unsure(w, at);
-        else
-            uncovered |= 1u << cell;
+        return 0;
     }
-    return (uint8_t)uncovered;
+    for (int i = 0; i < cover->unsure_count; i++)
+        room->unsure[room->unsure_count++] = cover->unsure[i];
+    return (uint8_t)(hidden | cover->uncovered);
 }
 
 /* ---- verdict -----------------------------------------------------------------------------------
@@ -597,19 +558,33 @@ static uint8_t list_apexes(const csg_judge_room *room, uint8_t cells, csg_judged
     return (uint8_t)count;
 }
 
+/* The place of the surface that is farthest from its triangles, of each cell that was searched. */
+static uint8_t list_places(const csg_cover *cover, uint8_t cells, csg_judged_apex *places)
+{
+    unsigned count = 0;
+    for (unsigned rest = cover->off & cells; rest; rest &= rest - 1) {
+        unsigned cell = (unsigned)__builtin_ctz(rest);
+        places[count] = (csg_judged_apex){.cell = (uint8_t)cell, .polygon = CSG_JUDGED_NO_POLYGON};
+        csg_vec3_to_floats(places[count++].at, cover->farthest[cell]);
+    }
+    return (uint8_t)count;
+}
+
 /* Of the cells that are not to be divided. False: out of memory. */
 static bool keep(const brick_work *w, uint8_t cells)
 {
     csg_judge_room *room = w->room;
     csg_judged_root roots[CSG_JUDGED_MOST_ROOTS];
     csg_judged_crease creases[CSG_JUDGED_MOST_CREASES];
-    csg_judged_apex apexes[CSG_JUDGED_MOST_APEXES];
+    csg_judged_apex apexes[CSG_JUDGED_MOST_APEXES + CSG_BRICK_CELLS];
     csg_judged judged = {.roots = roots, .creases = creases, .apexes = apexes};
     if (!cells)
         return true;
     judged.root_count = list_roots(room, w->brick, cells, roots);
     judged.crease_count = list_creases(room, creases);
     judged.apex_count = list_apexes(room, cells, apexes);
+    if (w->judge->tells_seen)
+        judged.apex_count += list_places(&w->cover, cells, apexes + judged.apex_count);
     judged.pierced = &room->pierced;
     w->brick->judged = csg_judged_keep(&room->found, &judged);
     return w->brick->judged != NULL;
@@ -626,15 +601,14 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     bool is_finest = brick->level == b->finest;
     double cell = csg_bricks_cell(b, brick->level) * b->lattice->cell_size;
     csg_tape tape;
-    csg_hunted hunted = {.count = 0};
     brick_work w = {.judge = judge,
                     .bricks = b,
                     .brick = brick,
                     .room = room,
                     .probe = csg_judge_probe(judge, b, brick, room, &tape),
-                    .hunted = &hunted,
                     .cell = cell,
-                    .is_small = csg_judge_may_fail(judge, cell)};
+                    .is_small = csg_judge_may_fail(judge, cell),
+                    .cover = {.off = 0}};
     w.least = w.is_small ? judge->tolerance : 0.1 * judge->tolerance;
     csg_pierce(&w.probe, b, brick, f, &room->pierced);
     brick->pierced = room->pierced.edges;
@@ -642,17 +616,16 @@ bool csg_judge_brick(void *user, uint32_t worker, const csg_bricks *b, csg_brick
     brick->flat = brick->several = 0;
     collect_edges(b, brick, room);
     solve_edges(judge, b, brick, room);
-    room->triangle_count = 0;
-    memset(room->first_triangle, 0, sizeof room->first_triangle);
-    memset(room->end_triangle, 0, sizeof room->end_triangle);
+    room->triangles.count = 0;
+    memset(room->triangles.first, 0, sizeof room->triangles.first);
+    memset(room->triangles.end, 0, sizeof room->triangles.end);
     make_polygons(&w);
     find_creases(&w.probe, room, b, brick, judge);
     unsigned wanted = find_bad(&w);
     /* Where nothing is hidden in a cell, nothing is in a brick in its place. */
     uint8_t cells = (uint8_t)(CSG_BRICK_ALL_CELLS & ~(wanted | brick->searched));
     if (cells && !is_finest) {
-        wanted |= csg_hunt(&w.probe, b, brick, judge->tolerance, f, cells, &hunted);
-        wanted |= find_uncovered(&w, cells & (uint8_t)~wanted);
+        wanted |= search(&w, f, cells);
         brick->searched |= cells & (uint8_t)~wanted;
     }
     room->evaluations += w.probe.evaluations;

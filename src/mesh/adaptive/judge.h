@@ -6,15 +6,12 @@
 #define CSG_MESH_ADAPTIVE_JUDGE_H
 
 #include "field/kernels/roots.h"
+#include "mesh/adaptive/cover.h"
 #include "mesh/adaptive/cut_polygons.h"
 #include "mesh/adaptive/judged.h"
 #include "mesh/adaptive/polygons.h"
 
-enum {
-    CSG_BRICK_CELLS = CSG_BRICK_EDGE * CSG_BRICK_EDGE * CSG_BRICK_EDGE,
-    CSG_JUDGE_MOST_TRIANGLES = 64 * CSG_BRICK_CELLS,
-    CSG_NO_FACE = 0xFF
-};
+enum { CSG_NO_FACE = 0xFF };
 
 /* One thread's room. */
 typedef struct csg_judge_room {
@@ -30,8 +27,7 @@ typedef struct csg_judge_room {
     csg_cut_polygon pieces[CSG_JUDGED_MOST_APEXES]; /* of the brick's cells, each cell's together */
     int piece_count;
     uint8_t first_piece[CSG_BRICK_CELLS], end_piece[CSG_BRICK_CELLS];
-    csg_vec3 triangles[CSG_JUDGE_MOST_TRIANGLES][3]; /* of good cells, each cell's together */
-    uint32_t triangle_count, first_triangle[CSG_BRICK_CELLS], end_triangle[CSG_BRICK_CELLS];
+    csg_brick_triangles triangles;
     csg_arena found;  /* what the judge found of bricks that are not joined yet */
     csg_vec3 *unsure; /* places of the surface away from the brick's own triangles, and so near to a
                          side of it that the next brick's may be there (unsure.h) */
@@ -48,6 +44,7 @@ typedef struct csg_judge {
     double tolerance;      /* how far triangles may be from the surface */
     double bulge;          /* how far sides of polygons may be, before they get a vertex between */
     bool sharp;            /* look for creases */
+    bool tells_seen;       /* keep places for csg_seen_gather */
     float noise;           /* of values */
     csg_plain_polygons plain;
     float end_distance; /* of vertices from lattice points: a part of an edge of the finest */

@@ -11,7 +11,7 @@ enum {
     CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS, /* of edges, of faces: csg_brick_slot */
     CSG_JUDGED_MOST_ROOTS = 2 * CSG_BRICK_EDGES,
     CSG_JUDGED_MOST_CREASES = CSG_SIDE_PARTS * CSG_MOST_FACES,
-    CSG_JUDGED_MOST_APEXES = 32
+    CSG_JUDGED_MOST_APEXES = 32 /* of polygons */
 };
 
 /* The slot of an edge, or of a face, along or across an axis, by its lower (lowest) point. */
@@ -43,12 +43,14 @@ typedef struct csg_judged_crease {
     bool is_torn;       /* csg_face_crease */
 } csg_judged_crease;
 
-/* The point in the middle of a fan, as long as the polygon has so many vertices in faces. */
+/* The point in the middle of a fan, as long as the polygon has so many vertices in faces; of no
+ * polygon: the place of the surface that is farthest from the triangles of the cell (cover.h). */
 typedef struct csg_judged_apex {
     float at[3];
     uint8_t cell, polygon, in_faces;
     uint8_t kind; /* a csg_apex_kind */
 } csg_judged_apex;
+#define CSG_JUDGED_NO_POLYGON UINT8_C(0xFF)
 
 typedef struct csg_judged {
     uint8_t root_count, crease_count, apex_count;

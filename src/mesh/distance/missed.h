@@ -8,6 +8,7 @@
 #ifndef CSG_MESH_DISTANCE_MISSED_H
 #define CSG_MESH_DISTANCE_MISSED_H
 
+#include "mesh/adaptive/seen.h"
 #include "mesh/remesh/remesh.h"
 
 /* A place of the surface where it is not one flat sheet, and the triangle that is nearest to it. */
@@ -29,6 +30,11 @@ typedef struct csg_missed {
 /* error: what is nearer than that is not missed. CSGM_OK or why it was stopped (reported); the same
  * for any number of threads. */
 csgm_status csg_missed_find(const csg_remesh *remesh, double error, csg_missed *out);
+/* In place of a search: what the judge of cells saw (adaptive/seen.h), as far as the mesh, which
+ * may be a part of one, is within the error of it. CSGM_OK or CSGM_ERR_MEMORY (reported): then
+ * there is nothing to release. */
+csgm_status csg_missed_take_seen(const csg_remesh *remesh, const csg_seen *seen, double error,
+                                 csg_missed *out);
 void csg_missed_release(csg_missed *missed, csg_memory *memory);
 
 #endif

@@ -14,6 +14,7 @@
 #include "base/trace.h"
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
+#include "mesh/adaptive/seen.h"
 #include "mesh/adaptive/unsure.h"
 #include "mesh/pipeline/adaptive_tiles.h"
 #include "mesh/pipeline/certify.h"
@@ -43,6 +44,7 @@ typedef struct adaptive {
     csg_mesh_goal *goal;
     uint64_t own_triangles; /* that it began with */
     csg_joined joined;      /* what the goal has of tiles */
+    csg_seen seen;          /* what it has of the judge's places */
     double refined_s;
     bool is_too_fine; /* the tolerance takes too many bricks */
 } adaptive;
@@ -113,6 +115,7 @@ static csgm_status create_judge(adaptive *a)
                            .tolerance = SHARE_OF_CELLS * cells_error(a->goal),
                            .bulge = SHARE_OF_SIDES * cells_error(a->goal),
                            .sharp = a->goal->sharp,
+                           .tells_seen = !a->goal->proves, /* a proof looks for itself */
                            .noise = m->noise,
                            .end_distance = (float)fmin(
                                fmax(4 * (double)m->unit / a->lattice.cell_size, 0x1p-10), 0.25)};
@@ -284,7 +287,9 @@ static void end_room(csg_judge_room *room, csg_memory *memory)
 static void release(adaptive *a)
 {
     a->goal->joined = NULL;
+    a->goal->seen = NULL;
     csg_joined_end(&a->joined);
+    csg_seen_release(&a->seen, &a->input.context->memory);
     csg_bricks_destroy(&a->bricks);
     csg_arena_reset(&a->judge.kept);
     for (uint32_t i = 0; a->judge.rooms && i < a->workers.count; i++)
@@ -350,8 +355,11 @@ static csgm_status extract(adaptive *a)
 {
     csg_extraction *x = &a->extraction;
     const csg_memory *memory = &a->input.context->memory;
+    a->goal->seen = a->judge.tells_seen ? &a->seen : NULL;
     for (;;) {
         bool any = false;
+        if (a->goal->seen && !csg_seen_gather(&a->seen, &a->bricks, &a->input.context->memory))
+            return csg_context_no_memory(a->input.context);
         size_t tile = csg_mesh_tile_bricks(&a->bricks, a->goal, memory->limit_bytes);
         a->goal->joined = tile ? &a->joined : NULL;
         csgm_status status =

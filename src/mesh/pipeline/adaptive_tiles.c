@@ -67,6 +67,7 @@ static csgm_status add_tile(const csg_mesh_input *input, const csg_marching *mar
     const csg_tile_mesh mesh = {.mesh = part.mesh,
                                 .places = part.places,
                                 .creases = part.creases,
+                                .seen = goal->seen,
                                 .low = tile->box.min,
                                 .high = tile->box.max,
                                 .error = csg_mesh_goal_error(goal),

@@ -48,6 +48,7 @@ typedef struct tile {
     const csg_tile_mesh *given;
     csg_closed_mesh closed;
     csg_remesh remesh;
+    csg_missed seen; /* what the judge saw in it */
     csg_decimation decimation;
     uint32_t *number; /* per vertex: in the joined mesh; CSG_CORNER_NONE */
 } tile;
@@ -63,7 +64,10 @@ static csgm_status thin_out(tile *t, const csg_marching *marching, csg_mesh_watc
     /* not the tile's own: places are rounded as those of the whole mesh are */
     r->tree.noise = csg_triangle_tree_noise(csg_lattice_extent(marching->lattice));
     r->error = given->error;
-    status = csg_decimation_begin(&t->decimation, r, NULL, NULL);
+    if (given->seen)
+        status = csg_missed_take_seen(r, given->seen, given->error, &t->seen);
+    if (status == CSGM_OK)
+        status = csg_decimation_begin(&t->decimation, r, &t->seen, NULL);
     if (status != CSGM_OK)
         return status;
     t->decimation.farthest_vertex = given->farthest;
@@ -238,6 +242,7 @@ csgm_status csg_joined_add(csg_joined *j, const csg_tile_mesh *given, const csg_
     if (status == CSGM_OK)
         status = append(&t);
     csg_decimation_end(&t.decimation);
+    csg_missed_release(&t.seen, &j->context->memory);
     if (t.remesh.corners.memory) /* it was begun */
         csg_remesh_end(&t.remesh);
     csg_closed_mesh_release(&t.closed);

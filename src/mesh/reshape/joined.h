@@ -38,6 +38,7 @@ typedef struct csg_tile_mesh {
     csgm_mesh *mesh;        /* open at its border; with all that vertices have */
     const uint64_t *places; /* per vertex; 0: it is not at the border */
     const uint8_t *creases; /* per vertex */
+    const csg_seen *seen;   /* by the judge, of the whole mesh; NULL: nobody was asked */
     csg_vec3 low, high;     /* its cube, field frame; low.x > high.x: it is not thinned out */
     double error, farthest; /* as csg_remesh and csg_decimation have them */
     double share;           /* of what is left of the stage, for progress */

@@ -137,8 +137,12 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
     static const double PART = 2; /* of the error: what is as far from the mesh is not part of it */
     CSG_ZONE(r->context, "missed parts");
     *missed = (csg_missed){0};
-    if (!(goal->error > 0) || !goal->proves || goal->is_own)
+    if (!(goal->error > 0) || goal->is_own)
         return CSGM_OK;
+    if (!goal->proves) /* tiles had what was seen in them */
+        return goal->seen && !goal->joined
+                   ? csg_missed_take_seen(r, goal->seen, csg_mesh_goal_error(goal), missed)
+                   : CSGM_OK;
     csgm_status status = csg_missed_find(r, goal->error, missed);
     if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
         goal->cell_size = 0.5 * r->cell;

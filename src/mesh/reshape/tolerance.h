@@ -16,11 +16,13 @@ typedef struct csg_mesh_goal {
     uint64_t triangles; /* that may stay, in place of `share`; errors then grow from `error` on */
     bool proves;        /* the error holds everywhere, or it is said where not; else of samples */
     bool improve;
-    bool sharp;         /* creases are kept */
-    bool chooses;       /* the cell size */
-    bool follows;       /* the shape, with its cells */
-    bool is_own;        /* it begins with the triangles of polyhedra: it is the surface */
-    csgm_mesh *own;     /* these, for the next try, which takes them over; NULL: none */
+    bool sharp;           /* creases are kept */
+    bool chooses;         /* the cell size */
+    bool follows;         /* the shape, with its cells */
+    bool is_own;          /* it begins with the triangles of polyhedra: it is the surface */
+    csgm_mesh *own;       /* these, for the next try, which takes them over; NULL: none */
+    const csg_seen *seen; /* what the judge of its cells saw beside their triangles; NULL: nobody
+                             was asked */
     csg_joined *joined; /* the mesh was thinned out in tiles: their samples and kinds; else NULL */
     double finer;       /* of the error: what these are made for */
     double asked;       /* the error before it was raised, since it took too many cells */
