@@ -3,6 +3,7 @@
 plate are there, bounds, parts, colours and formats are as on equal cells, and what excludes each other is said.
 """
 import json
+import math
 import unittest
 
 import cli
@@ -106,6 +107,29 @@ intersection(blend = 0.3) {
         stats = self.stats("cube([30.3, 21.3, 10.7], round = 1.1);", "--quality", "normal")
         self.assertLess(stats["mesh"]["triangles_before"], 16500)
         self.assertEqual(stats["mesh"]["euler"], 2)
+
+    def test_flat_faces_are_shaded_flat(self):
+        """Where they end in a rounding, the surface's normals turn by up to 9 degrees within the tolerance: viewers would bend all of a face."""
+        self.write("scene.txt", "cube([30, 20, 10], round = 1);")
+        self.assert_status(cli.run("scene.txt", "-q", "-o", "out.obj", cwd=self.folder), 0)
+        with open(self.path("out.obj"), encoding="utf-8") as file:
+            lines = [line.split() for line in file]
+        at, normals = ([[float(x) for x in words[1:4]] for words in lines if words[:1] == [kind]] for kind in ("v", "vn"))
+        large = 0
+        for words in lines:
+            if words[:1] != ["f"]:
+                continue
+            corners = [[int(x or 0) - 1 for x in word.split("/")] for word in words[1:]]
+            a, b, c = (at[corner[0]] for corner in corners)
+            u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
+            cross = [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
+            area = math.hypot(*cross)
+            if area > 30:
+                large += 1
+                for corner in corners:
+                    cosine = sum(cross[k] * normals[corner[-1]][k] for k in range(3)) / area
+                    self.assertLess(math.degrees(math.acos(min(cosine, 1))), 1)
+        self.assertGreater(large, 10)
 
     def test_finer_is_nearer(self):
         volumes = [self.stats("sphere(10);", "--quality", q)["mesh"]["volume"] for q in ("draft", "normal", "fine")]

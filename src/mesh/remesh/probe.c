@@ -243,21 +243,21 @@ void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size
     each_tape(probe, at, count, visit_gradients, &out);
 }
 
-void csg_probe_true_gradient(csg_probe *probe, const float at[3], float out[3])
+static void visit_true_gradients(csg_probe *probe, const csg_tape *tape, size_t count, void *out)
 {
     csg_probe_room *room = probe->room;
-    choose_tape(probe, at, 0);
-    csg_tape tape = probe->marching->field->tape;
+    float(*g)[3] = out;
     float *const c[3] = {room->channels[0], room->channels[1], room->channels[2]};
-    tape.nodes = room->nodes[0];
-    tape.count = room->node_count[0];
-    room->next[0] = NO_POINT;
-    gather(room, (const float(*)[3])at, 0);
-    csg_marching_gradients(probe->marching, &tape, room->x, room->y, room->z, 1, c, probe->scratch,
-                           probe->scratch_floats);
-    for (int k = 0; k < 3; k++)
-        out[k] = c[k][0];
-    probe->evaluations++;
+    csg_marching_gradients(probe->marching, tape, room->x, room->y, room->z, count, c,
+                           probe->scratch, probe->scratch_floats);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            g[room->which[i]][k] = c[k][i];
+}
+
+void csg_probe_true_gradients(csg_probe *probe, const float (*at)[3], size_t count, float (*out)[3])
+{
+    each_tape(probe, at, count, visit_true_gradients, out);
 }
 
 /* ---- colours and materials --------------------------------------------------------------------

@@ -32,9 +32,10 @@ void csg_probe_gradients(csg_probe *probe, const float (*at)[3], size_t count, f
 /* Both, for little more than the gradients. */
 void csg_probe_values_and_gradients(csg_probe *probe, const float (*at)[3], size_t count, float *f,
                                     float (*g)[3]);
-/* The gradient of the values, which those above are not where the angle between operands matters
+/* The gradients of the values, which those above are not where the angle between operands matters
  * (kernel.h): for normals. */
-void csg_probe_true_gradient(csg_probe *probe, const float at[3], float out[3]);
+void csg_probe_true_gradients(csg_probe *probe, const float (*at)[3], size_t count,
+                              float (*out)[3]);
 /* As a block's vertices get them; each of the two may be NULL. */
 void csg_probe_looks(csg_probe *probe, const float (*at)[3], size_t count, uint8_t (*colors)[4],
                      uint16_t (*materials)[2]);

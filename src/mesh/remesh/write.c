@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * The changed mesh back into csgm_mesh arrays: numbers without gaps, normals of the field at the
- * new places, at creases a vertex for each sheet where that is asked for.
+ * The changed mesh back into csgm_mesh arrays: numbers without gaps, normals, at creases a
+ * vertex for each sheet where that is asked for.
  */
 #include <math.h>
 #include <string.h>
 
-#include "mesh/remesh/remesh.h"
+#include "mesh/remesh/normals.h"
 
 typedef struct writer {
     csg_remesh *remesh;
@@ -53,32 +53,6 @@ static void number_vertex(writer *w, uint32_t vertex)
 /* ---- normals -----------------------------------------------------------------------------------
  */
 
-static csg_vec3 outward(csg_remesh *r, csg_vec3 at)
-{
-    const float place[3] = {(float)at.x, (float)at.y, (float)at.z};
-    float g[3];
-    csg_probe_true_gradient(&r->probe, place, g);
-    return csg_vec3_normalize(csg_vec3_make(-(double)g[0], -(double)g[1], -(double)g[2]));
-}
-
-/* At a crease the gradient takes one side, or has none: a little within the triangle it is that of
- * the triangle's sheet. */
-static csg_vec3 outward_within(csg_remesh *r, uint32_t c, double *angle)
-{
-    static const double STEP = 0.02; /* of a cell */
-    csg_vec3 at = csg_remesh_corner(r, c);
-    csg_vec3 a = csg_vec3_sub(csg_remesh_corner(r, csg_corner_next(c)), at);
-    csg_vec3 b = csg_vec3_sub(csg_remesh_corner(r, csg_corner_previous(c)), at);
-    csg_vec3 face = csg_vec3_normalize(csg_vec3_cross(a, b));
-    csg_vec3 way = csg_vec3_add(csg_vec3_normalize(a), csg_vec3_normalize(b));
-    double reach = fmin(STEP * r->cell, 0.3 * fmin(csg_vec3_norm(a), csg_vec3_norm(b)));
-    way = csg_vec3_scale(csg_vec3_normalize(way), reach);
-    csg_vec3 normal = outward(r, csg_vec3_add(at, way));
-    double lengths = csg_vec3_norm(a) * csg_vec3_norm(b);
-    *angle = lengths > 0 ? csg_vec3_norm(csg_vec3_cross(a, b)) / lengths : 0; /* its sine */
-    return csg_vec3_dot(normal, face) > 0.7 ? normal : face;
-}
-
 static void store(float out[3], csg_vec3 normal)
 {
     csg_vec3 n = csg_vec3_normalize(normal);
@@ -89,27 +63,18 @@ static void store(float out[3], csg_vec3 normal)
     out[2] = (float)n.z + 0.0f;
 }
 
-/* The normals of the new vertices at one old vertex. */
-static void write_normals(writer *w, uint32_t vertex)
+/* False: out of memory. */
+static bool write_normals(writer *w)
 {
     csg_remesh *r = w->remesh;
-    uint32_t first = first_of_sheet(r, vertex), c = first;
-    csg_vec3 normal = outward(r, r->at[vertex]), sum = {0, 0, 0};
-    if (r->kind[vertex] == CSG_VERTEX_SMOOTH && csg_vec3_dot(normal, normal) > 0.5) {
-        store(w->mesh->normals + 3 * (size_t)w->number[c], normal);
-        return;
-    }
-    do {
-        double angle;
-        csg_vec3 own = outward_within(r, c, &angle);
-        uint32_t next = csg_corner_swing(&r->corners, c);
-        sum = csg_vec3_add(sum, csg_vec3_scale(own, angle));
-        if (next == first || w->number[next] != w->number[c]) {
-            store(w->mesh->normals + 3 * (size_t)w->number[c], sum);
-            sum = csg_vec3_make(0, 0, 0);
-        }
-        c = next;
-    } while (c != first);
+    csg_vec3 *normals = csg_memory_alloc(r->memory, w->count * sizeof *normals);
+    if (!normals)
+        return false;
+    csg_remesh_find_normals(r, w->number, w->count, normals);
+    for (uint32_t v = 0; v < w->count; v++)
+        store(w->mesh->normals + 3 * (size_t)v, normals[v]);
+    csg_memory_release(r->memory, normals, w->count * sizeof *normals);
+    return true;
 }
 
 /* ---- vertices and triangles --------------------------------------------------------------------
@@ -141,8 +106,6 @@ static void fill(writer *w)
             write_vertex(w, v, w->number[c]);
             c = csg_corner_swing(m, c);
         } while (c != m->corner[v]);
-        if (w->mesh->normals)
-            write_normals(w, v);
     }
     size_t i = 0;
     for (uint32_t t = 0; t < m->triangle_count; t++)
@@ -177,6 +140,10 @@ csgm_status csg_remesh_write_back(csg_remesh *r, bool normals, bool split)
         if (m->corner[v] != CSG_CORNER_NONE)
             number_vertex(&w, v);
     csgm_status status = create(&w, r->mesh, normals);
+    if (status == CSGM_OK && normals && !write_normals(&w)) {
+        csg_mesh_destroy(w.mesh);
+        status = csg_context_no_memory(r->context);
+    }
     if (status == CSGM_OK) {
         fill(&w);
         w.mesh->split = split;
