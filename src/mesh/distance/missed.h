@@ -31,7 +31,7 @@ typedef struct csg_missed {
  * for any number of threads. */
 csgm_status csg_missed_find(const csg_remesh *remesh, double error, csg_missed *out);
 /* In place of a search: what the judge of cells saw (adaptive/seen.h), as far as the mesh, which
- * may be a part of one, is within the error of it. CSGM_OK or CSGM_ERR_MEMORY (reported): then
+ * may be a part of one, is within the error of it. CSGM_OK, or why it was stopped (reported): then
  * there is nothing to release. */
 csgm_status csg_missed_take_seen(const csg_remesh *remesh, const csg_seen *seen, double error,
                                  csg_missed *out);

@@ -325,7 +325,7 @@ static csgm_status paint_whole(adaptive *a)
 {
     csgm_mesh *mesh = a->extraction.mesh;
     mesh->origin = csg_mesh_origin_of(&a->input);
-    return csg_mesh_paint(&a->input, &a->workers.marching, mesh);
+    return csg_mesh_paint(&a->input, &a->workers.marching, &a->watch, mesh);
 }
 
 /* What the judge has kept of bricks is for the extraction alone: half of what the lattice takes and

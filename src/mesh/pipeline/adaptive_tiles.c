@@ -63,7 +63,7 @@ static csgm_status add_tile(const csg_mesh_input *input, const csg_marching *mar
     if (status != CSGM_OK)
         return status;
     part.mesh->origin = csg_mesh_origin_of(input);
-    status = csg_mesh_paint(input, marching, part.mesh);
+    status = csg_mesh_paint(input, marching, x->watch, part.mesh);
     const csg_tile_mesh mesh = {.mesh = part.mesh,
                                 .places = part.places,
                                 .creases = part.creases,

@@ -9,23 +9,30 @@
 
 #include <string.h>
 
+#include "mesh/remesh/probe_loop.h"
+
 enum { POINTS = 3, TRIANGLES = CSG_PROBE_MOST / POINTS };
 
-/* Triangles whose points are asked for together. */
-typedef struct batch {
-    uint32_t triangle[TRIANGLES];
+typedef struct fit {
+    const csg_remesh *remesh;
+    uint32_t *triangles;       /* those that are live */
+    float (*there)[POINTS][3]; /* what each of these says of its corners */
     size_t count;
-    float at[POINTS * TRIANGLES][3], gradient[POINTS * TRIANGLES][3];
-} batch;
+} fit;
+
+static void corners_of(const csg_remesh *r, uint32_t triangle, csg_vec3 v[3])
+{
+    for (uint32_t k = 0; k < 3; k++)
+        v[k] = csg_remesh_corner(r, 3 * triangle + k);
+}
 
 /* Near each corner: two thirds of the way from the middle of the other side. */
-static void add_points(batch *b, const csg_vec3 v[3])
+static void place_points(const csg_vec3 v[3], float (*at)[3])
 {
     csg_vec3 sum = csg_vec3_add(v[0], csg_vec3_add(v[1], v[2]));
-    for (int k = 0; k < POINTS; k++) {
-        csg_vec3 p = csg_vec3_scale(csg_vec3_add(sum, csg_vec3_scale(v[k], 3)), 1.0 / 6);
-        csg_vec3_to_floats(b->at[POINTS * b->count + (size_t)k], p);
-    }
+    for (int k = 0; k < POINTS; k++)
+        csg_vec3_to_floats(at[k],
+                           csg_vec3_scale(csg_vec3_add(sum, csg_vec3_scale(v[k], 3)), 1.0 / 6));
 }
 
 /* Where the field has no gradient, or that of another sheet, the triangle's own normal will do. */
@@ -36,45 +43,69 @@ static csg_vec3 normal_at(const float gradient[3], csg_vec3 own)
     return csg_vec3_dot(n, own) > SAME_SHEET ? n : own;
 }
 
-static void add_to_corners(csg_remesh *r, batch *b, const uint32_t *number, csg_vec3 *normals)
+static void continue_to_corners(const csg_vec3 v[3], const float (*gradient)[3],
+                                float there[POINTS][3])
 {
-    csg_probe_true_gradients(&r->probe, (const float(*)[3])b->at, POINTS * b->count, b->gradient);
-    for (size_t i = 0; i < b->count; i++) {
-        uint32_t t = b->triangle[i];
-        csg_vec3 cross =
-            csg_triangle_cross(csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
-                               csg_remesh_corner(r, 3 * t + 2));
-        csg_vec3 own = csg_vec3_normalize(cross), n[POINTS], mean = {0, 0, 0};
-        double area = csg_vec3_norm(cross);
+    csg_vec3 own = csg_vec3_normalize(csg_triangle_cross(v[0], v[1], v[2]));
+    csg_vec3 n[POINTS], mean = {0, 0, 0};
+    for (int k = 0; k < POINTS; k++) {
+        n[k] = normal_at(gradient[k], own);
+        mean = csg_vec3_add(mean, csg_vec3_scale(n[k], 1.0 / POINTS));
+    }
+    for (int k = 0; k < POINTS; k++)
+        csg_vec3_to_floats(there[k], csg_vec3_sub(csg_vec3_scale(n[k], 2), mean));
+}
+
+static void ask_some(void *user, csg_probe *probe, size_t first, size_t end)
+{
+    const fit *f = user;
+    float at[POINTS * TRIANGLES][3], gradient[POINTS * TRIANGLES][3];
+    csg_vec3 v[3];
+    for (size_t i = first; i < end; i++) {
+        corners_of(f->remesh, f->triangles[i], v);
+        place_points(v, at + POINTS * (i - first));
+    }
+    csg_probe_true_gradients(probe, (const float(*)[3])at, POINTS * (end - first), gradient);
+    for (size_t i = first; i < end; i++) {
+        corners_of(f->remesh, f->triangles[i], v);
+        continue_to_corners(v, (const float(*)[3])(gradient + POINTS * (i - first)), f->there[i]);
+    }
+}
+
+/* Sums by areas. */
+static void add_up(const fit *f, const uint32_t *number, csg_vec3 *normals)
+{
+    for (size_t i = 0; i < f->count; i++) {
+        csg_vec3 v[3];
+        corners_of(f->remesh, f->triangles[i], v);
+        double area = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
         for (size_t k = 0; k < POINTS; k++) {
-            n[k] = normal_at(b->gradient[POINTS * i + k], own);
-            mean = csg_vec3_add(mean, csg_vec3_scale(n[k], 1.0 / POINTS));
-        }
-        for (uint32_t k = 0; k < POINTS; k++) {
-            csg_vec3 there = csg_vec3_sub(csg_vec3_scale(n[k], 2), mean);
-            csg_vec3 *sum = &normals[number[3 * t + k]];
+            csg_vec3 *sum = &normals[number[3 * (size_t)f->triangles[i] + k]];
+            csg_vec3 there = csg_vec3_from_floats(f->there[i][k]);
             *sum = csg_vec3_add(*sum, csg_vec3_scale(there, area));
         }
     }
-    b->count = 0;
 }
 
-void csg_remesh_find_normals(csg_remesh *r, const uint32_t *number, uint32_t count,
+bool csg_remesh_find_normals(csg_remesh *r, const uint32_t *number, uint32_t count,
                              csg_vec3 *normals)
 {
-    batch b;
-    b.count = 0;
+    const size_t live = r->corners.live;
+    fit f = {.remesh = r,
+             .triangles = csg_memory_alloc(r->memory, live * sizeof *f.triangles),
+             .there = csg_memory_alloc(r->memory, live * sizeof *f.there)};
+    bool done = f.triangles && f.there;
+    for (uint32_t t = 0; done && t < r->corners.triangle_count; t++)
+        if (csg_corners_is_live(&r->corners, t))
+            f.triangles[f.count++] = t;
+    if (!done)
+        csg_mesh_stop_without_memory(r->watch);
+    else
+        done = csg_probe_loop(r->watch, r->marching, f.count, TRIANGLES, ask_some, &f);
     memset(normals, 0, count * sizeof *normals);
-    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
-        if (!csg_corners_is_live(&r->corners, t))
-            continue;
-        const csg_vec3 v[3] = {csg_remesh_corner(r, 3 * t), csg_remesh_corner(r, 3 * t + 1),
-                               csg_remesh_corner(r, 3 * t + 2)};
-        add_points(&b, v);
-        b.triangle[b.count++] = t;
-        if (b.count == TRIANGLES)
-            add_to_corners(r, &b, number, normals);
-    }
-    if (b.count)
-        add_to_corners(r, &b, number, normals);
+    if (done)
+        add_up(&f, number, normals);
+    csg_memory_release(r->memory, f.triangles, live * sizeof *f.triangles);
+    csg_memory_release(r->memory, f.there, live * sizeof *f.there);
+    return done;
 }

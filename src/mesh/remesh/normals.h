@@ -9,8 +9,8 @@
 #include "mesh/remesh/remesh.h"
 
 /* One for each number that corners have, outward, of any length; (0, 0, 0) where there is none.
- * number: per corner. */
-void csg_remesh_find_normals(csg_remesh *remesh, const uint32_t *number, uint32_t count,
+ * number: per corner. False: stopped, or without memory; the watch knows. */
+bool csg_remesh_find_normals(csg_remesh *remesh, const uint32_t *number, uint32_t count,
                              csg_vec3 *normals);
 
 #endif

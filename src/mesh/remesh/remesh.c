@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/elementary.h"
+#include "mesh/remesh/probe_loop.h"
 
 enum { BATCH = CSG_PROBE_MOST };
 
@@ -173,33 +174,43 @@ static double angle(csg_vec3 a, csg_vec3 b)
     return csg_arc_cosine(csg_vec3_dot(csg_vec3_normalize(a), csg_vec3_normalize(b)));
 }
 
-/* Takes those edges back on both sides of which the field's gradients differ by much less than the
- * triangles do: there the surface is curved. False: stopped. */
-static bool take_back_curved(csg_remesh *r, uint8_t *creased)
+typedef struct turning_edges {
+    const csg_remesh *remesh;
+    uint8_t *creased;
+} turning_edges;
+
+/* Of both corners across an edge the lower one has a say: nobody else looks at either. */
+static void look_at_turns(void *user, csg_probe *probe, size_t first, size_t end)
 {
     static const double MOST_OF_TURN = 0.6;
-    const csg_corners *m = &r->corners;
+    const turning_edges *e = user;
+    const csg_corners *m = &e->remesh->corners;
     float at[BATCH][3], g[BATCH][3];
-    uint32_t of[BATCH / 2], n = 0, count = 3 * m->triangle_count;
-    for (uint32_t c = 0; c < count; c++) {
-        if (creased[c] && c < m->across[c]) {
-            place_beside(r, c, at[2 * n]);
-            place_beside(r, m->across[c], at[2 * n + 1]);
+    uint32_t of[BATCH / 2], n = 0;
+    for (uint32_t c = (uint32_t)first; c < end; c++)
+        if (c < m->across[c] && e->creased[c]) {
+            place_beside(e->remesh, c, at[2 * n]);
+            place_beside(e->remesh, m->across[c], at[2 * n + 1]);
             of[n++] = c;
         }
-        if (n < BATCH / 2 && c + 1 < count)
-            continue;
-        if (csg_mesh_should_stop(r->watch))
-            return false;
-        csg_probe_gradients(&r->probe, (const float(*)[3])at, 2 * n, g);
-        for (uint32_t i = 0; i < n; i++) {
-            double turn = angle(normal_of(r, of[i] / 3), normal_of(r, m->across[of[i]] / 3));
-            double own = angle(csg_vec3_from_floats(g[2 * i]), csg_vec3_from_floats(g[2 * i + 1]));
-            creased[of[i]] = creased[m->across[of[i]]] = own >= MOST_OF_TURN * turn;
-        }
-        n = 0;
+    if (!n)
+        return;
+    csg_probe_gradients(probe, (const float(*)[3])at, 2 * n, g);
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t c = of[i], across = m->across[c];
+        double turn = angle(normal_of(e->remesh, c / 3), normal_of(e->remesh, across / 3));
+        double own = angle(csg_vec3_from_floats(g[2 * i]), csg_vec3_from_floats(g[2 * i + 1]));
+        e->creased[c] = e->creased[across] = own >= MOST_OF_TURN * turn;
     }
-    return true;
+}
+
+/* Takes those edges back on both sides of which the field's gradients differ by much less than the
+ * triangles do: there the surface is curved. False: stopped, or without memory; the watch knows. */
+static bool take_back_curved(csg_remesh *r, uint8_t *creased)
+{
+    turning_edges e = {r, creased};
+    size_t corners = 3 * (size_t)r->corners.triangle_count;
+    return csg_probe_loop(r->watch, r->marching, corners, BATCH / 2, look_at_turns, &e);
 }
 
 static bool find_kinds(csg_remesh *r, const crease_room *room)

@@ -63,18 +63,18 @@ static void store(float out[3], csg_vec3 normal)
     out[2] = (float)n.z + 0.0f;
 }
 
-/* False: out of memory. */
+/* False: stopped, or without memory; the watch knows. */
 static bool write_normals(writer *w)
 {
     csg_remesh *r = w->remesh;
     csg_vec3 *normals = csg_memory_alloc(r->memory, w->count * sizeof *normals);
     if (!normals)
-        return false;
-    csg_remesh_find_normals(r, w->number, w->count, normals);
-    for (uint32_t v = 0; v < w->count; v++)
+        return csg_mesh_stop_without_memory(r->watch);
+    bool done = csg_remesh_find_normals(r, w->number, w->count, normals);
+    for (uint32_t v = 0; v < w->count && done; v++)
         store(w->mesh->normals + 3 * (size_t)v, normals[v]);
     csg_memory_release(r->memory, normals, w->count * sizeof *normals);
-    return true;
+    return done;
 }
 
 /* ---- vertices and triangles --------------------------------------------------------------------
@@ -142,7 +142,7 @@ csgm_status csg_remesh_write_back(csg_remesh *r, bool normals, bool split)
     csgm_status status = create(&w, r->mesh, normals);
     if (status == CSGM_OK && normals && !write_normals(&w)) {
         csg_mesh_destroy(w.mesh);
-        status = csg_context_no_memory(r->context);
+        status = csg_mesh_why_stopped(r->watch);
     }
     if (status == CSGM_OK) {
         fill(&w);

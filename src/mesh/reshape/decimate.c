@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "mesh/remesh/probe_loop.h"
+
 /* ---- the queue ---------------------------------------------------------------------------------
  */
 
@@ -180,26 +182,36 @@ static void add_triangle(csg_decimation *d, uint32_t triangle, const csg_vec3 *t
     }
 }
 
-/* In place of the normals of vertices whose triangles are bent: the field's, zero at critical
- * points; zero for all others. */
-static void find_tangents(csg_remesh *r, csg_vec3 *normals)
+typedef struct tangent_search {
+    const csg_remesh *remesh;
+    csg_vec3 *normals;
+} tangent_search;
+
+static void find_some_tangents(void *user, csg_probe *probe, size_t first, size_t end)
 {
+    const tangent_search *t = user;
     float at[BATCH][3], g[BATCH][3];
-    uint32_t of[BATCH], n = 0, count = r->corners.vertex_count;
-    for (uint32_t v = 0; v < count; v++) {
-        if (is_bent(r, v, normals[v])) {
-            csg_vec3_to_floats(at[n], r->at[v]);
+    uint32_t of[BATCH], n = 0;
+    for (uint32_t v = (uint32_t)first; v < end; v++) {
+        if (is_bent(t->remesh, v, t->normals[v])) {
+            csg_vec3_to_floats(at[n], t->remesh->at[v]);
             of[n++] = v;
         }
-        normals[v] = csg_vec3_make(0, 0, 0);
-        if (n < BATCH && v + 1 < count)
-            continue;
-        csg_probe_gradients(&r->probe, (const float(*)[3])at, n, g);
-        for (uint32_t i = 0; i < n; i++)
-            normals[of[i]] = csg_vec3_normalize(
-                csg_vec3_make(-(double)g[i][0], -(double)g[i][1], -(double)g[i][2]));
-        n = 0;
+        t->normals[v] = csg_vec3_make(0, 0, 0);
     }
+    if (n)
+        csg_probe_gradients(probe, (const float(*)[3])at, n, g);
+    for (uint32_t i = 0; i < n; i++)
+        t->normals[of[i]] = csg_vec3_normalize(csg_vec3_scale(csg_vec3_from_floats(g[i]), -1));
+}
+
+/* In place of the normals of vertices whose triangles are bent: the field's, zero at critical
+ * points; zero for all others. False: stopped, or without memory; the watch knows. */
+static bool find_tangents(csg_remesh *r, csg_vec3 *normals)
+{
+    tangent_search t = {r, normals};
+    return csg_probe_loop(r->watch, r->marching, r->corners.vertex_count, BATCH, find_some_tangents,
+                          &t);
 }
 
 static void make_quadrics(csg_decimation *d, const csg_vec3 *tangents)
@@ -211,21 +223,21 @@ static void make_quadrics(csg_decimation *d, const csg_vec3 *tangents)
             add_triangle(d, t, tangents);
 }
 
-/* Samples and quadrics. */
+/* Samples and quadrics. False: stopped, or without memory; the watch knows. */
 static bool look_at_mesh(csg_decimation *d)
 {
     csg_remesh *r = d->remesh;
     size_t count = r->corners.vertex_count;
     csg_vec3 *normals = csg_memory_alloc(r->memory, count * sizeof *normals);
     if (!normals)
-        return false;
+        return csg_mesh_stop_without_memory(r->watch);
     find_normals(r, normals);
-    if (!d->begun)
-        csg_decimation_make_samples(d, normals);
-    find_tangents(r, normals);
-    make_quadrics(d, normals);
+    bool done = (d->begun || csg_decimation_make_samples(d, normals)) && find_tangents(r, normals);
+    if (done)
+        make_quadrics(d, normals);
     csg_memory_release(r->memory, normals, count * sizeof *normals);
-    return !d->begun || csg_decimation_take_samples(d);
+    return done &&
+           (!d->begun || csg_decimation_take_samples(d) || csg_mesh_stop_without_memory(r->watch));
 }
 
 /* ---- beginning and ending ----------------------------------------------------------------------
@@ -279,10 +291,10 @@ csgm_status csg_decimation_begin(csg_decimation *d, csg_remesh *remesh, const cs
                           .begun = begun,
                           .low = csg_vec3_make(-INFINITY, -INFINITY, -INFINITY),
                           .high = csg_vec3_make(INFINITY, INFINITY, INFINITY)};
-    if (take_arrays(d) && look_at_mesh(d))
+    if ((take_arrays(d) || csg_mesh_stop_without_memory(remesh->watch)) && look_at_mesh(d))
         return CSGM_OK;
     csg_decimation_end(d);
-    return csg_context_no_memory(remesh->context);
+    return csg_mesh_why_stopped(remesh->watch);
 }
 
 void csg_decimation_end(csg_decimation *d)

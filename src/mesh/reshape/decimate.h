@@ -10,7 +10,8 @@
 #include "mesh/reshape/decimation.h"
 #include "mesh/reshape/far.h"
 
-/* CSGM_OK or CSGM_ERR_MEMORY (reported). The error may grow from one csg_decimate to the next. */
+/* CSGM_OK or why it was stopped (reported). The error may grow from one csg_decimate to the next.
+ */
 csgm_status csg_decimation_begin(csg_decimation *decimation, csg_remesh *remesh,
                                  const csg_missed *missed, csg_begun_samples *begun);
 void csg_decimation_end(csg_decimation *decimation);

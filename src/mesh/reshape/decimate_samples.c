@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/four.h"
+#include "mesh/remesh/probe_loop.h"
 #include "mesh/reshape/decimate.h"
 
 enum { BATCH = CSG_PROBE_MOST };
@@ -38,9 +39,8 @@ static csg_vec3 normal_of(const csg_decimation *d, uint32_t triangle)
 }
 
 /* One of Newton's steps for each that is not near the surface yet. */
-static void take_step(csg_decimation *d, float (*at)[3], float *f, float close, size_t count)
+static void take_step(csg_probe *probe, float (*at)[3], float *f, float close, size_t count)
 {
-    csg_remesh *r = d->remesh;
     float places[BATCH][3], g[BATCH][3], values[BATCH];
     uint32_t of[BATCH], n = 0;
     for (uint32_t i = 0; i < count; i++)
@@ -48,13 +48,13 @@ static void take_step(csg_decimation *d, float (*at)[3], float *f, float close, 
             memcpy(places[n], at[i], sizeof places[n]);
             of[n++] = i;
         }
-    csg_probe_gradients(&r->probe, (const float(*)[3])places, n, g);
+    csg_probe_gradients(probe, (const float(*)[3])places, n, g);
     for (uint32_t i = 0; i < n; i++) {
         float square = g[i][0] * g[i][0] + g[i][1] * g[i][1] + g[i][2] * g[i][2];
         for (int axis = 0; axis < 3 && square > 1e-6f; axis++)
             places[i][axis] -= f[of[i]] * g[i][axis] / square;
     }
-    csg_probe_values(&r->probe, (const float(*)[3])places, n, values);
+    csg_probe_values(probe, (const float(*)[3])places, n, values);
     for (uint32_t i = 0; i < n; i++) {
         memcpy(at[of[i]], places[i], sizeof places[i]);
         f[of[i]] = values[i];
@@ -62,23 +62,22 @@ static void take_step(csg_decimation *d, float (*at)[3], float *f, float close, 
 }
 
 /* Two of Newton's steps, one where that is enough; what is not on the surface then, or has left the
- * triangle's neighbourhood, is no sample. */
-static void project(csg_decimation *d, float (*at)[3], const uint32_t *triangles, size_t count)
+ * triangle's neighbourhood, is nowhere. */
+static void project(const csg_remesh *r, csg_probe *probe, float (*at)[3], size_t count)
 {
     enum { STEPS = 2 };
-    csg_remesh *r = d->remesh;
     float f[BATCH], start[BATCH][3];
-    float close = 4 * r->probe.noise + (float)(1e-3 * r->error);
+    float close = 4 * probe->noise + (float)(1e-3 * r->error);
     memcpy(start, at, count * sizeof *at);
-    csg_probe_values(&r->probe, (const float(*)[3])at, count, f);
+    csg_probe_values(probe, (const float(*)[3])at, count, f);
     for (int step = 0; step < STEPS; step++)
-        take_step(d, at, f, close, count);
+        take_step(probe, at, f, close, count);
     double reach = fmax(0.5 * r->cell, 2 * r->error); /* cells may be of any size there */
     for (size_t i = 0; i < count; i++) {
         double x = (double)(at[i][0] - start[i][0]), y = (double)(at[i][1] - start[i][1]),
                z = (double)(at[i][2] - start[i][2]);
-        if (fabsf(f[i]) <= close && x * x + y * y + z * z <= reach * reach)
-            add_sample(d, at[i], normal_of(d, triangles[i]), triangles[i]);
+        if (!(fabsf(f[i]) <= close && x * x + y * y + z * z <= reach * reach))
+            at[i][0] = NAN;
     }
 }
 
@@ -105,27 +104,49 @@ static bool may_bulge(const csg_decimation *d, uint32_t triangle, const csg_vec3
     return csg_triangle_longest_side(at) > LARGE * r->error;
 }
 
-static void sample_triangles(csg_decimation *d, const csg_vec3 *normals)
+/* Places above triangles that the surface may bulge out of; of others nowhere. */
+typedef struct bulges {
+    const csg_decimation *decimation;
+    const csg_vec3 *normals;
+    float (*at)[3]; /* per triangle; NAN: nowhere */
+} bulges;
+
+static void find_some_bulges(void *user, csg_probe *probe, size_t first, size_t end)
+{
+    const bulges *b = user;
+    const csg_remesh *r = b->decimation->remesh;
+    float at[BATCH][3];
+    uint32_t of[BATCH], n = 0;
+    for (uint32_t t = (uint32_t)first; t < end; t++) {
+        b->at[t][0] = NAN;
+        if (!csg_corners_is_live(&r->corners, t) || !may_bulge(b->decimation, t, b->normals))
+            continue;
+        csg_vec3 sum = csg_vec3_add(
+            csg_remesh_corner(r, 3 * t),
+            csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
+        csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+        of[n++] = t;
+    }
+    if (n)
+        project(r, probe, at, n);
+    for (uint32_t i = 0; i < n; i++)
+        memcpy(b->at[of[i]], at[i], sizeof at[i]);
+}
+
+/* False: stopped, or without memory; the watch knows. */
+static bool sample_triangles(csg_decimation *d, const csg_vec3 *normals)
 {
     csg_remesh *r = d->remesh;
-    float at[BATCH][3];
-    uint32_t triangles[BATCH];
-    size_t n = 0;
-    for (uint32_t t = 0; t < r->corners.triangle_count; t++) {
-        if (csg_corners_is_live(&r->corners, t) && may_bulge(d, t, normals)) {
-            csg_vec3 sum = csg_vec3_add(
-                csg_remesh_corner(r, 3 * t),
-                csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
-            at[n][0] = (float)(sum.x / 3);
-            at[n][1] = (float)(sum.y / 3);
-            at[n][2] = (float)(sum.z / 3);
-            triangles[n++] = t;
-        }
-        if (n == BATCH || (n && t + 1 == r->corners.triangle_count)) {
-            project(d, at, triangles, n);
-            n = 0;
-        }
-    }
+    const uint32_t count = r->corners.triangle_count;
+    bulges b = {d, normals, csg_memory_alloc(r->memory, count * sizeof *b.at)};
+    if (!b.at)
+        return csg_mesh_stop_without_memory(r->watch);
+    bool done = csg_probe_loop(r->watch, r->marching, count, BATCH, find_some_bulges, &b);
+    for (uint32_t t = 0; t < count && done; t++)
+        if (b.at[t][0] == b.at[t][0])
+            add_sample(d, b.at[t], normal_of(d, t), t);
+    csg_memory_release(r->memory, b.at, count * sizeof *b.at);
+    return done;
 }
 
 static void add_missed(csg_decimation *d)
@@ -135,7 +156,7 @@ static void add_missed(csg_decimation *d)
                    d->missed->points[i].triangle);
 }
 
-void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
+bool csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
 {
     const csg_remesh *r = d->remesh;
     memset(d->first_sample, 0xFF, r->corners.triangle_count * sizeof *d->first_sample);
@@ -147,8 +168,10 @@ void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals)
                    r->corners.corner[v] / 3);
     }
     d->vertex_samples = d->sample_count;
-    sample_triangles(d, normals);
+    if (!sample_triangles(d, normals))
+        return false;
     add_missed(d);
+    return true;
 }
 
 bool csg_begun_samples_add_other(csg_begun_samples *s, csg_memory *memory,

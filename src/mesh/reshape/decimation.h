@@ -147,8 +147,9 @@ static inline bool csg_decimation_owns(const csg_decimation *d, uint32_t vertex)
 /* Room for so many samples; those of vertices that the mesh has begun with come first, and stay
  * where they are. False: out of memory. */
 bool csg_decimation_hold_samples(csg_decimation *d, size_t needed);
-/* normals: the mean of the triangles at each vertex. */
-void csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
+/* normals: the mean of the triangles at each vertex. False: stopped, or without memory; the watch
+ * knows. */
+bool csg_decimation_make_samples(csg_decimation *d, const csg_vec3 *normals);
 /* Those that the mesh has begun with. False: out of memory. */
 bool csg_decimation_take_samples(csg_decimation *d);
 /* Collapses edges of a region that are not settled, cheapest first, until `least` triangles are
