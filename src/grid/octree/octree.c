@@ -621,20 +621,6 @@ csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count)
     return octree->blocks;
 }
 
-const csg_block *csg_octree_block_at(const csg_octree *w, const uint32_t at[3])
-{
-    size_t low = 0, high = w->block_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (csg_lattice_compare_morton(w->blocks[middle]->at, at) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    bool is_there = low < w->block_count && !memcmp(w->blocks[low]->at, at, 3 * sizeof *at);
-    return is_there ? w->blocks[low] : NULL;
-}
-
 bool csg_octree_is_before_sampled(const csg_octree *w, const uint32_t at[3])
 {
     uint32_t cube[3] = {at[0] / 2, at[1] / 2, at[2] / 2};

@@ -60,8 +60,6 @@ csgm_status csg_octree_sample_picked(csg_octree *octree, const size_t *picked, s
 size_t csg_octree_find(const csg_octree *octree, const uint32_t at[3]);
 /* The blocks, in Morton order, that the surface touches. */
 csg_block *const *csg_octree_blocks(const csg_octree *octree, size_t *count);
-/* The one at this place; NULL: it was not sampled, or the surface does not touch it. */
-const csg_block *csg_octree_block_at(const csg_octree *octree, const uint32_t at[3]);
 /* Whether a block at this place comes, in Morton order, before all of the range sampled last. */
 bool csg_octree_is_before_sampled(const csg_octree *octree, const uint32_t at[3]);
 /* The most doubtful edge of each doubtful block sampled so far, in an order of their own; *edges:

@@ -86,6 +86,23 @@ static unsigned crossed_edges(const csg_cell_tables *tables, unsigned pattern)
     return crossed;
 }
 
+/* In memory; NULL: it is not, or the surface does not touch it. */
+static const csg_block *block_of(const csg_octree *octree, const uint32_t cell[3])
+{
+    const uint32_t at[3] = {cell[0] / E, cell[1] / E, cell[2] / E};
+    size_t low = 0, high;
+    csg_block *const *blocks = csg_octree_blocks(octree, &high);
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int order = csg_lattice_compare_morton(blocks[middle]->at, at);
+        if (!order)
+            return blocks[middle];
+        low = order < 0 ? middle + 1 : low;
+        high = order < 0 ? high : middle;
+    }
+    return NULL;
+}
+
 /* From a block in memory: its signs, and the tape of the part of it that has the cell. */
 static unsigned pattern_in_block(const csg_block *block, const uint32_t cell[3], csg_tape *tape)
 {
@@ -102,8 +119,7 @@ uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,
                                const uint32_t cell[3], csg_edges *edges, float *scratch,
                                size_t scratch_floats, csg_feature_cell *out)
 {
-    const uint32_t at[3] = {cell[0] / E, cell[1] / E, cell[2] / E};
-    const csg_block *block = csg_octree_block_at(octree, at);
+    const csg_block *block = block_of(octree, cell);
     csg_tape tape = m->field->tape;
     uint64_t evaluations = 0;
     out->pattern = 0;
