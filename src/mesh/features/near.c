@@ -65,6 +65,37 @@ const csg_feature_block *csg_near_block(const csg_feature_store *store,
     return csg_feature_store_find(store, at);
 }
 
+/* ---- boxes -------------------------------------------------------------------------------------
+ */
+
+static const csg_near_box NOWHERE = {{INFINITY, INFINITY, INFINITY},
+                                     {-INFINITY, -INFINITY, -INFINITY}};
+
+static void include(csg_near_box *box, const float low[3], const float high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->low[axis] = low[axis] < box->low[axis] ? low[axis] : box->low[axis];
+        box->high[axis] = high[axis] > box->high[axis] ? high[axis] : box->high[axis];
+    }
+}
+
+static void set_box(csg_near_triangle *t)
+{
+    t->box = NOWHERE;
+    for (int c = 0; c < 3; c++)
+        include(&t->box, t->shape.at[c], t->shape.at[c]);
+}
+
+/* Whether two boxes come within `reach` of each other along each axis. */
+static bool overlap(const csg_near_box *a, const csg_near_box *b, float reach)
+{
+    bool apart = false;
+    for (int axis = 0; axis < 3; axis++)
+        apart =
+            apart || a->low[axis] - reach > b->high[axis] || b->low[axis] - reach > a->high[axis];
+    return !apart;
+}
+
 /* ---- triangles of features ---------------------------------------------------------------------
  */
 
@@ -125,6 +156,7 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
         in_face = in_face || is_in_face(m->tables, corners[c].edge, cell, beside);
     }
     t->plain = !moved && (t->owner[1] == i || (with_apex && in_face));
+    set_box(t);
 }
 
 /* ---- where they are ----------------------------------------------------------------------------
@@ -249,33 +281,6 @@ static bool enter_cells(const view *v, const int low[3], const int high[3], uint
 /* ---- collecting --------------------------------------------------------------------------------
  */
 
-static const csg_near_box NOWHERE = {{INFINITY, INFINITY, INFINITY},
-                                     {-INFINITY, -INFINITY, -INFINITY}};
-
-static void include(csg_near_box *box, const float low[3], const float high[3])
-{
-    for (int axis = 0; axis < 3; axis++) {
-        box->low[axis] = low[axis] < box->low[axis] ? low[axis] : box->low[axis];
-        box->high[axis] = high[axis] > box->high[axis] ? high[axis] : box->high[axis];
-    }
-}
-
-static csg_near_box box_of(const csg_near_triangle *t)
-{
-    csg_near_box box = NOWHERE;
-    for (int c = 0; c < 3; c++)
-        include(&box, t->shape.at[c], t->shape.at[c]);
-    return box;
-}
-
-static bool overlap(const csg_near_box *a, const csg_near_box *b)
-{
-    bool apart = false;
-    for (int axis = 0; axis < 3; axis++)
-        apart = apart || a->low[axis] > b->high[axis] || b->low[axis] > a->high[axis];
-    return !apart;
-}
-
 void csg_near_measure(const csg_near *near, size_t index)
 {
     view v = view_of(near, NULL, index);
@@ -284,8 +289,7 @@ void csg_near_measure(const csg_near *near, size_t index)
         for (int k = 0; k < csg_feature_triangle_count(&near->store->features[i]); k++) {
             csg_near_triangle t;
             triangle_of(&v, v.block, i, k, &t);
-            csg_near_box box = box_of(&t);
-            include(&near->boxes[i], box.low, box.high);
+            include(&near->boxes[i], t.box.low, t.box.high);
         }
     }
 }
@@ -307,14 +311,13 @@ static bool add_block(const view *v, const csg_feature_block *block, const csg_n
 {
     const csg_near *near = v->near;
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
-        if (within && !overlap(within, &near->boxes[i]))
+        if (within && !overlap(within, &near->boxes[i], 0))
             continue;
         for (int index = 0; index < csg_feature_triangle_count(&near->store->features[i]);
              index++) {
             csg_near_triangle t;
             triangle_of(v, block, i, index, &t);
-            csg_near_box box = box_of(&t);
-            if ((!within || overlap(within, &box)) && !add_triangle(v, block, &t))
+            if ((!within || overlap(within, &t.box, 0)) && !add_triangle(v, block, &t))
                 return false;
         }
     }
@@ -447,6 +450,7 @@ static int smooth_triangles(const view *v, const int at[3],
                 csg_marching_shift(m, found->at[edge[c]], to->shape.at[c]);
                 to->shape.vertex[c] = number_of_edge(v, at, edge[c]);
             }
+            set_box(to);
         }
     return count;
 }
@@ -458,9 +462,35 @@ static int smooth_triangles(const view *v, const int at[3],
  * decimals are off: half a unit in the last place each coordinate, two points by less than two. */
 static bool meet(const view *v, const csg_near_triangle *s, const csg_near_triangle *t)
 {
-    double reach = 2 * (double)v->near->marching->unit;
-    return csg_exact_meet(&s->shape, &t->shape) ||
-           (s->far && t->far && csg_exact_nearly_meet(&s->shape, &t->shape, reach));
+    bool is_far = s->far && t->far;
+    float reach = 2 * v->near->marching->unit;
+    return overlap(&s->box, &t->box, is_far ? reach : 0) &&
+           (csg_exact_meet(&s->shape, &t->shape) ||
+            (is_far && csg_exact_nearly_meet(&s->shape, &t->shape, (double)reach)));
+}
+
+/* Whether the plane of a triangle passes a cell: where none does, what marching cubes makes there
+ * is of no interest. */
+static bool passes(const view *v, const csg_near_triangle *t, const int cell[3])
+{
+    const csg_marching *m = v->near->marching;
+    const double size = m->lattice->cell_size;
+    const double half = (0.5 + 10 * CLEAR) * size + 2 * (double)m->unit;
+    const double origin[3] = {m->lattice->origin.x, m->lattice->origin.y, m->lattice->origin.z};
+    const double shift[3] = {m->shift.x, m->shift.y, m->shift.z};
+    double u[3], w[3], away = 0, reach = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        u[axis] = (double)t->shape.at[1][axis] - (double)t->shape.at[0][axis];
+        w[axis] = (double)t->shape.at[2][axis] - (double)t->shape.at[0][axis];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        double n = u[i] * w[j] - u[j] * w[i];
+        double middle = origin[axis] + shift[axis] + (cell[axis] + 0.5) * size;
+        away += n * (middle - (double)t->shape.at[0][axis]);
+        reach += half * fabs(n);
+    }
+    return fabs(away) <= reach;
 }
 
 /* The triangles entered into one cell. */
@@ -479,9 +509,10 @@ static bool search_cell(const view *v, const uint64_t *places, size_t count, csg
             if ((t->own || t->owner[0] > s->owner[0]) && meet(v, s, t) && !found(user, s, t))
                 return false;
         }
-        if (smooth_count < 0)
+        bool is_alone = s->far && !passes(v, s, cell);
+        if (smooth_count < 0 && !is_alone)
             smooth_count = smooth_triangles(v, cell, smooth);
-        for (int k = 0; k < smooth_count; k++)
+        for (int k = 0; k < smooth_count && !is_alone; k++)
             if (meet(v, s, &smooth[k]) && !found(user, s, &smooth[k]))
                 return false;
     }
