@@ -140,6 +140,29 @@ static void assert_same(csg_triangle_hit found, csg_triangle_hit wanted)
     assert_int_equal(found.place, wanted.place);
 }
 
+/* Up to the greatest distance nothing depends on it, and beyond it there is nothing. */
+static void check_most(tie_case *t, const csg_tree_parts *parts, csg_vec3 p,
+                       csg_triangle_hit wanted)
+{
+    const csg_triangle_hit none = {.place = CSG_TREE_NONE};
+    csg_vec3 lanes[CSG_SHAPE_LANES];
+    csg_triangle_hit hits[CSG_SHAPE_LANES];
+    csg_tree_parts near = *parts;
+    for (int l = 0; l < CSG_SHAPE_LANES; l++)
+        lanes[l] = csg_vec3_add(p, solid_random_point(&t->random, l ? 0.1 : 0));
+    for (int k = -1; k <= 1; k++) {
+        near.most = k < 0 ? 0.99 * wanted.squared : k ? 1.01 * wanted.squared : wanted.squared;
+        bool is_found = wanted.squared <= near.most;
+        csg_triangle_hit expected = is_found ? wanted : none;
+        expected.squared = is_found ? wanted.squared : near.most;
+        uint32_t hint = k ? CSG_TREE_NONE : wanted.place;
+        assert_same(csg_tree_nearest_of(&t->tree, &near, p, hint), expected);
+        csg_shape_kernel_scalar.nearest_triangles(&t->tree, &near, lanes, CSG_SHAPE_LANES, hint,
+                                                  hits);
+        assert_same(hits[0], expected);
+    }
+}
+
 /* A list of what is within reach of a cell around p, as blocks have one. */
 static void check_list(tie_case *t, csg_vec3 p, csg_triangle_hit wanted)
 {
@@ -153,12 +176,14 @@ static void check_list(tie_case *t, csg_vec3 p, csg_triangle_hit wanted)
     csg_vec3 lanes[CSG_SHAPE_LANES];
     csg_triangle_hit hits[CSG_SHAPE_LANES];
     assert_true(count > 0);
-    assert_same(csg_tree_nearest_of(&t->tree, items, count, p, CSG_TREE_NO_HINT), wanted);
+    const csg_tree_parts parts = {items, count, INFINITY};
+    assert_same(csg_tree_nearest_of(&t->tree, &parts, p, CSG_TREE_NONE), wanted);
     for (int l = 0; l < CSG_SHAPE_LANES; l++)
         lanes[l] = csg_vec3_add(p, solid_random_point(&t->random, l ? 0.1 * half : 0));
-    csg_shape_kernel_scalar.nearest_triangles(&t->tree, items, count, lanes, CSG_SHAPE_LANES,
-                                              CSG_TREE_NO_HINT, hits);
+    csg_shape_kernel_scalar.nearest_triangles(&t->tree, &parts, lanes, CSG_SHAPE_LANES,
+                                              CSG_TREE_NONE, hits);
     assert_same(hits[0], wanted);
+    check_most(t, &parts, p, wanted);
 }
 
 static void check_ties(unsigned seed)
