@@ -66,7 +66,6 @@ void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
         state->waits = false;
         state->moves = f->moves;
     }
-    csg_near_measure(&cross->near, index);
     cross->blocks[index] = changed ? CHANGED : 0;
 }
 
@@ -84,6 +83,12 @@ void csg_feature_cross_wake(csg_feature_cross *cross)
 bool csg_feature_cross_is_awake(const csg_feature_cross *cross, size_t block)
 {
     return cross->blocks[block] & AWAKE;
+}
+
+void csg_feature_cross_measure(csg_feature_cross *cross, size_t block)
+{
+    if (csg_feature_cross_is_awake(cross, block))
+        csg_near_measure(&cross->near, block);
 }
 
 static bool note(void *user, const csg_near_triangle *s, const csg_near_triangle *t)

@@ -281,17 +281,34 @@ static bool enter_cells(const view *v, const int low[3], const int high[3], uint
 /* ---- collecting --------------------------------------------------------------------------------
  */
 
+/* Of all its triangles' corners. */
+static csg_near_box box_of(const csg_near *near, const csg_feature *f)
+{
+    csg_near_box box = NOWHERE;
+    uint64_t seen[4] = {0}; /* by what a triangle calls a corner, a bit each */
+    for (int k = 0; k < csg_feature_triangle_count(f); k++)
+        for (int c = 0; c < 3; c++) {
+            uint8_t t = f->triangle[k][c];
+            if (seen[t / 64] >> t % 64 & 1)
+                continue;
+            seen[t / 64] |= (uint64_t)1 << t % 64;
+            const csg_feature *apex =
+                t == CSG_FEATURE_APEX ? f
+                : t >= CSG_FEATURE_BEYOND
+                    ? &near->store->features[f->side[t - CSG_FEATURE_BEYOND].beyond]
+                    : NULL;
+            float at[3];
+            csg_marching_shift(near->marching, apex ? apex->at : f->side[t].corner, at);
+            include(&box, at, at);
+        }
+    return box;
+}
+
 void csg_near_measure(const csg_near *near, size_t index)
 {
-    view v = view_of(near, NULL, index);
-    for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++) {
-        near->boxes[i] = NOWHERE;
-        for (int k = 0; k < csg_feature_triangle_count(&near->store->features[i]); k++) {
-            csg_near_triangle t;
-            triangle_of(&v, v.block, i, k, &t);
-            include(&near->boxes[i], t.box.low, t.box.high);
-        }
-    }
+    const csg_feature_block *block = &near->store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++)
+        near->boxes[i] = box_of(near, &near->store->features[i]);
 }
 
 static bool add_triangle(const view *v, const csg_feature_block *block, const csg_near_triangle *t)
