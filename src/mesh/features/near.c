@@ -311,6 +311,31 @@ void csg_near_measure(const csg_near *near, size_t index)
         near->boxes[i] = box_of(near, &near->store->features[i]);
 }
 
+csg_near_box csg_near_box_of_block(const csg_near *near, size_t index)
+{
+    const csg_feature_block *block = &near->store->blocks[index];
+    csg_near_box box = NOWHERE;
+    for (uint32_t i = block->first; i < block->first + block->count; i++)
+        include(&box, near->boxes[i].low, near->boxes[i].high);
+    return box;
+}
+
+/* Where triangles that are far from their cells must keep apart. */
+static float reach_of(const csg_near *near)
+{
+    return 2 * near->marching->unit;
+}
+
+bool csg_near_reaches(const csg_near *near, uint32_t feature, const csg_near_box *box)
+{
+    const csg_feature *f = &near->store->features[feature];
+    bool reaches = overlap(&near->boxes[feature], box, reach_of(near));
+    for (int s = 0; s < f->side_count && !reaches; s++)
+        reaches = f->side[s].beyond != CSG_FEATURE_NONE &&
+                  overlap(&near->boxes[f->side[s].beyond], box, reach_of(near));
+    return reaches;
+}
+
 static bool add_triangle(const view *v, const csg_feature_block *block, const csg_near_triangle *t)
 {
     csg_near_room *room = v->room;
@@ -384,15 +409,13 @@ static bool reserve_cells(csg_memory *memory, csg_near_room *room)
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
 {
     view v = view_of(near, room, index);
-    csg_near_box within = NOWHERE;
     if (!reserve_cells(near->memory, room))
         return false;
     room->count = room->place_count = 0;
     memset(room->own_cells, 0, sizeof room->own_cells);
     if (!add_block(&v, v.block, NULL))
         return false;
-    for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++)
-        include(&within, near->boxes[i].low, near->boxes[i].high);
+    const csg_near_box within = csg_near_box_of_block(near, index);
     for (int k = 0; k < CSG_NEAR_BLOCKS; k++) {
         const csg_feature_block *other =
             k == ITSELF ? NULL : csg_near_block(near->store, v.block, k);
@@ -480,7 +503,7 @@ static int smooth_triangles(const view *v, const int at[3],
 static bool meet(const view *v, const csg_near_triangle *s, const csg_near_triangle *t)
 {
     bool is_far = s->far && t->far;
-    float reach = 2 * v->near->marching->unit;
+    float reach = reach_of(v->near);
     return overlap(&s->box, &t->box, is_far ? reach : 0) &&
            (csg_exact_meet(&s->shape, &t->shape) ||
             (is_far && csg_exact_nearly_meet(&s->shape, &t->shape, (double)reach)));

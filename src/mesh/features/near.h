@@ -60,6 +60,10 @@ typedef struct csg_near {
 
 /* The boxes of a block's features. */
 void csg_near_measure(const csg_near *near, size_t block);
+/* Around the features of a block, whose boxes are known. */
+csg_near_box csg_near_box_of_block(const csg_near *near, size_t block);
+/* Whether triangles of a feature, or of one next to it, come near a box; their boxes are known. */
+bool csg_near_reaches(const csg_near *near, uint32_t feature, const csg_near_box *box);
 /* All triangles that can meet one of the block's; boxes are known. False: out of memory. */
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t block);
 
