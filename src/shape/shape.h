@@ -28,7 +28,7 @@ enum { CSG_SHAPE_MOST_NEAR = 8 };
 
 /* What of a shape's geometry can matter in a cell, as numbers of its tree. */
 typedef struct csg_shape_near {
-    double limit; /* distances up to it are exact, others too large; the sign is right */
+    double limit; /* distances up to it are exact, others larger than it; the sign is right */
     uint32_t count;
     uint32_t items[];
 } csg_shape_near;
@@ -71,7 +71,8 @@ double csg_shape_sample(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient);
 
 /* The same for many points, in the shape's own frame. Each result depends on its point alone, not
  * on its neighbours in the batch, and is the same on every machine. near: of a cell that holds the
- * points; up to its limit nothing depends on it. NULL: the whole shape. kernel (shape_kernel.h):
+ * points; up to its limit nothing depends on it, and what is larger than that may depend on how
+ * many points are asked for. NULL: the whole shape. kernel (shape_kernel.h):
  * the build for the instruction set in use, on which nothing depends but time; NULL: point by
  * point. */
 void csg_shape_values(const csg_shape *shape, const struct csg_shape_kernel *kernel,

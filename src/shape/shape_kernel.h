@@ -13,9 +13,9 @@ enum { CSG_SHAPE_LANES = 8 };
 /* hits[l] is csg_segment_nearest_of(tree, list, x[l], y[l]) for each of CSG_SHAPE_LANES points. */
 typedef void csg_nearest_segments_fn(const csg_segment_tree *tree, csg_segment_list list,
                                      const double *x, const double *y, csg_segment_hit *hits);
-/* hits[l] is csg_tree_nearest_of(tree, items, count, points[l], hint) for the first `used` of
+/* hits[l] is csg_tree_nearest_of(tree, parts, points[l], hint) for the first `used` of
  * CSG_SHAPE_LANES points at least. */
-typedef void csg_nearest_triangles_fn(const csg_tree *tree, const uint32_t *items, uint32_t count,
+typedef void csg_nearest_triangles_fn(const csg_tree *tree, const csg_tree_parts *parts,
                                       const csg_vec3 *points, size_t used, uint32_t hint,
                                       csg_triangle_hit *hits);
 

@@ -2,7 +2,9 @@
  * The nearest triangle of a tree: the least of all of them, and the same one wherever the search
  * begins; for points beside, within and far from small, large and thin meshes. To the bit, whoever
  * searches: all triangles, the tree, a list of its parts, points in lanes, where many are as near.
+ * What groups of triangles say of their sides is what each would say of its own.
  */
+#include "shape/polyhedra/edges.h"
 #include "shape/polyhedra/tree.h"
 #include "shape/shape_kernel.h"
 #include "shape/solid_support.h"
@@ -140,6 +142,29 @@ static void assert_same(csg_triangle_hit found, csg_triangle_hit wanted)
     assert_int_equal(found.place, wanted.place);
 }
 
+/* Up to the greatest distance nothing depends on it, and beyond it there is nothing. */
+static void check_most(tie_case *t, const csg_tree_parts *parts, csg_vec3 p,
+                       csg_triangle_hit wanted)
+{
+    const csg_triangle_hit none = {.place = CSG_TREE_NONE};
+    csg_vec3 lanes[CSG_SHAPE_LANES];
+    csg_triangle_hit hits[CSG_SHAPE_LANES];
+    csg_tree_parts near = *parts;
+    for (int l = 0; l < CSG_SHAPE_LANES; l++)
+        lanes[l] = csg_vec3_add(p, solid_random_point(&t->random, l ? 0.1 : 0));
+    for (int k = -1; k <= 1; k++) {
+        near.most = k < 0 ? 0.99 * wanted.squared : k ? 1.01 * wanted.squared : wanted.squared;
+        bool is_found = wanted.squared <= near.most;
+        csg_triangle_hit expected = is_found ? wanted : none;
+        expected.squared = is_found ? wanted.squared : near.most;
+        uint32_t hint = k ? CSG_TREE_NONE : wanted.place;
+        assert_same(csg_tree_nearest_of(&t->tree, &near, p, hint), expected);
+        csg_shape_kernel_scalar.nearest_triangles(&t->tree, &near, lanes, CSG_SHAPE_LANES, hint,
+                                                  hits);
+        assert_same(hits[0], expected);
+    }
+}
+
 /* A list of what is within reach of a cell around p, as blocks have one. */
 static void check_list(tie_case *t, csg_vec3 p, csg_triangle_hit wanted)
 {
@@ -153,12 +178,14 @@ static void check_list(tie_case *t, csg_vec3 p, csg_triangle_hit wanted)
     csg_vec3 lanes[CSG_SHAPE_LANES];
     csg_triangle_hit hits[CSG_SHAPE_LANES];
     assert_true(count > 0);
-    assert_same(csg_tree_nearest_of(&t->tree, items, count, p, CSG_TREE_NO_HINT), wanted);
+    const csg_tree_parts parts = {items, count, INFINITY};
+    assert_same(csg_tree_nearest_of(&t->tree, &parts, p, CSG_TREE_NONE), wanted);
     for (int l = 0; l < CSG_SHAPE_LANES; l++)
         lanes[l] = csg_vec3_add(p, solid_random_point(&t->random, l ? 0.1 * half : 0));
-    csg_shape_kernel_scalar.nearest_triangles(&t->tree, items, count, lanes, CSG_SHAPE_LANES,
-                                              CSG_TREE_NO_HINT, hits);
+    csg_shape_kernel_scalar.nearest_triangles(&t->tree, &parts, lanes, CSG_SHAPE_LANES,
+                                              CSG_TREE_NONE, hits);
     assert_same(hits[0], wanted);
+    check_most(t, &parts, p, wanted);
 }
 
 static void check_ties(unsigned seed)
@@ -185,10 +212,92 @@ static void test_ties(void **state)
         check_ties(seed);
 }
 
+/* ---- groups --------------------------------------------------------------------------------- */
+
+static void find_beside(const csg_tree *tree, const csg_triangles *chain, csg_arena *scratch,
+                        uint32_t (*beside)[3])
+{
+    csg_triangle_edges edges;
+    uint32_t *places = csg_arena_alloc(scratch, tree->count * sizeof *places);
+    assert_true(places && csg_edges_make(scratch, chain, &edges));
+    for (uint32_t i = 0; i < tree->count; i++)
+        places[tree->triangles[i].index] = i;
+    for (uint32_t half = 0; half < 3 * chain->count; half++) {
+        const csg_edge *edge = &edges.edges[edges.of_half[half]];
+        const uint32_t *halves = edges.halves + edge->first;
+        assert_int_equal(edge->count, 2);
+        beside[places[half / 3]][half % 3] = places[halves[halves[0] == half] / 3];
+    }
+}
+
+/* Of corners: how many lie within a ball. */
+static int count_within(const csg_tree_triangle *t, csg_vec3 center, double radius)
+{
+    const csg_vec3 at[3] = {t->a, csg_vec3_add(t->a, t->ab), csg_vec3_add(t->a, t->ac)};
+    int count = 0;
+    for (int k = 0; k < 3; k++)
+        count += csg_vec3_norm(csg_vec3_sub(at[k], center)) < radius;
+    return count;
+}
+
+/* Two balls of facets: apart, one within the other, or crossing. */
+static void check_groups(csg_random *random, int way)
+{
+    solid_case c;
+    csg_tree tree;
+    csg_arena scratch;
+    solid_begin(&c);
+    csg_vec3 first = solid_random_point(random, 0.05);
+    double radius = csg_random_uniform(random, 0.2, 0.3);
+    double away = radius * (way == 0 ? 2.2 : way == 1 ? 0.1 : csg_random_uniform(random, 0.7, 1.7));
+    csg_vec3 second = csg_vec3_add(first, csg_vec3_scale(random_direction(random), away));
+    const csg_vec3 centers[2] = {first, second};
+    const double radii[2] = {radius, way == 1 ? radius / 2 : radius};
+    for (int k = 0; k < 2; k++)
+        solid_add_ball(&c.triangles, centers[k], radii[k], 8 + csg_random_below(random, 20),
+                       8 + csg_random_below(random, 12), 0);
+    for (size_t i = 0; i < c.triangles.point_count; i++)
+        c.triangles.points[i] = on_lattice(c.triangles.points[i]);
+    csg_arena_init(&scratch, &c.memory);
+    assert_true(csg_tree_make(&c.memory, &scratch, &c.triangles, &tree));
+    uint32_t(*beside)[3] = csg_arena_alloc(&scratch, tree.count * sizeof *beside);
+    assert_non_null(beside);
+    find_beside(&tree, &c.triangles, &scratch, beside);
+    uint32_t crossing = 0, plain_count = 0, group = 0;
+    for (uint32_t i = 0; i < tree.count; i++) {
+        const csg_tree_triangle *t = &tree.triangles[i];
+        if (i % CSG_TREE_GROUP == 0)
+            group = csg_tree_plain_group(&tree, beside, i);
+        bool is_plain = group >> i % CSG_TREE_GROUP & 1;
+        for (int k = 0; k < 2 && way == 2; k++)
+            if (count_within(t, centers[k], 0.8 * radii[k]) > 0 &&
+                count_within(t, centers[k], 1.001 * radii[k]) < 3) {
+                assert_false(is_plain); /* facets lie farther out than 0.8 */
+                crossing++;
+            }
+        plain_count += is_plain;
+        assert_true(!is_plain || csg_tree_is_clear(&tree, i));
+        if (way < 2)
+            assert_int_equal(is_plain, !t->is_needle && csg_tree_is_clear(&tree, i));
+    }
+    assert_true(plain_count > 0 && (way < 2 || crossing > 0));
+    csg_arena_reset(&scratch);
+    csg_tree_release(&tree);
+    csg_triangles_release(&c.triangles);
+}
+
+static void test_groups(void **state)
+{
+    csg_random random = {1};
+    for (int round = 0; round < 60; round++)
+        check_groups(&random, round % 3);
+}
+
 /* Optional: the first seed of ties and the last. */
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest), cmocka_unit_test(test_ties)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_nearest), cmocka_unit_test(test_ties),
+                                       cmocka_unit_test(test_groups)};
     if (argc == 3) {
         first_seed = (unsigned)strtoul(argv[1], NULL, 10);
         last_seed = (unsigned)strtoul(argv[2], NULL, 10);

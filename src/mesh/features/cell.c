@@ -7,37 +7,18 @@
 
 #include "field/field.h"
 
-enum { CUBE = 2 * CSG_BLOCK_EDGE /* cells of a frontier cube's edge */ };
-
-/* Whether a comes before b in Morton order: the highest bit in which they differ says. */
-static bool is_before(const uint32_t a[3], const uint32_t b[3])
-{
-    int most = 2;
-    for (int axis = 1; axis >= 0; axis--) {
-        uint32_t known = a[most] ^ b[most], other = a[axis] ^ b[axis];
-        if (known < other && known < (known ^ other))
-            most = axis;
-    }
-    return a[most] < b[most];
-}
+enum { E = CSG_BLOCK_EDGE, CUBE = 2 * E /* cells of a frontier cube's edge */ };
 
 /* The tape of the frontier's cube that has a cell. False: the surface is not there. */
-static bool tape_of(const csg_octree *octree, const uint32_t cell[3], csg_tape *tape)
+static bool tape_of_frontier(const csg_octree *octree, const uint32_t cell[3], csg_tape *tape)
 {
     const uint32_t cube[3] = {cell[0] / CUBE, cell[1] / CUBE, cell[2] / CUBE};
-    size_t low = 0, high = csg_octree_frontier_count(octree);
-    while (low < high) {
-        uint32_t at[3];
-        size_t middle = low + (high - low) / 2;
-        *tape = csg_octree_frontier_tape(octree, middle, at);
-        if (!memcmp(at, cube, sizeof at))
-            return true;
-        if (is_before(at, cube))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return false;
+    uint32_t at[3];
+    size_t found = csg_octree_find(octree, cube);
+    if (found == csg_octree_frontier_count(octree))
+        return false;
+    *tape = csg_octree_frontier_tape(octree, found, at);
+    return true;
 }
 
 /* Which corners have been given the other sign, as blocks do: those that differ from all three next
@@ -105,25 +86,59 @@ static unsigned crossed_edges(const csg_cell_tables *tables, unsigned pattern)
     return crossed;
 }
 
+/* In memory; NULL: it is not, or the surface does not touch it. */
+static const csg_block *block_of(const csg_octree *octree, const uint32_t cell[3])
+{
+    const uint32_t at[3] = {cell[0] / E, cell[1] / E, cell[2] / E};
+    size_t low = 0, high;
+    csg_block *const *blocks = csg_octree_blocks(octree, &high);
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        int order = csg_lattice_compare_morton(blocks[middle]->at, at);
+        if (!order)
+            return blocks[middle];
+        low = order < 0 ? middle + 1 : low;
+        high = order < 0 ? high : middle;
+    }
+    return NULL;
+}
+
+/* From a block in memory: its signs, and the tape of the part of it that has the cell. */
+static unsigned pattern_in_block(const csg_block *block, const uint32_t cell[3], csg_tape *tape)
+{
+    csg_cell_rows rows = csg_cell_rows_of(block, (int)(cell[1] % E), (int)(cell[2] % E));
+    unsigned octant = 0;
+    for (int axis = 0; axis < 3; axis++)
+        octant |= (unsigned)(cell[axis] % E >= CSG_PART_EDGE) << axis;
+    tape->nodes = block->parts ? block->parts[octant].nodes : block->nodes;
+    tape->count = block->parts ? block->parts[octant].node_count : block->node_count;
+    return csg_cell_pattern(&rows, (int)(cell[0] % E));
+}
+
 uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,
                                const uint32_t cell[3], csg_edges *edges, float *scratch,
                                size_t scratch_floats, csg_feature_cell *out)
 {
-    csg_tape tape;
+    const csg_block *block = block_of(octree, cell);
+    csg_tape tape = m->field->tape;
+    uint64_t evaluations = 0;
     out->pattern = 0;
-    if (!tape_of(octree, cell, &tape))
-        return 0;
-    out->pattern = pattern_of(m, &tape, cell, scratch, scratch_floats);
+    if (block) {
+        out->pattern = pattern_in_block(block, cell, &tape);
+    } else if (tape_of_frontier(octree, cell, &tape)) {
+        out->pattern = pattern_of(m, &tape, cell, scratch, scratch_floats);
+        evaluations = 8;
+    }
     if (!m->tables->count[out->pattern])
-        return 8;
+        return evaluations;
     edges->count = 0;
     edges->end_distance = m->end_distance;
     for (unsigned rest = crossed_edges(m->tables, out->pattern); rest; rest &= rest - 1)
         add_edge(m, cell, (unsigned)__builtin_ctz(rest), edges);
-    uint64_t evaluations = m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
+    evaluations += m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
     for (uint32_t i = 0; i < edges->count; i++) {
-        float *at = out->at[edges->rank[i]];
-        at[0] = edges->x[i], at[1] = edges->y[i], at[2] = edges->z[i];
+        float *to = out->at[edges->rank[i]];
+        to[0] = edges->x[i], to[1] = edges->y[i], to[2] = edges->z[i];
     }
-    return 8 + evaluations;
+    return evaluations;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * What marching cubes makes of one cell, wherever it lies: signs and roots by the tape of the
- * octree's frontier. They are the bits of the mesh (pruning changes none), whichever blocks are in
- * memory.
+ * What marching cubes makes of one cell, wherever it lies: signs and roots by the block that has
+ * it, or, where that is not in memory, by the tape of the octree's frontier. They are the bits of
+ * the mesh either way (pruning changes none).
  */
 #ifndef CSG_MESH_FEATURES_CELL_H
 #define CSG_MESH_FEATURES_CELL_H

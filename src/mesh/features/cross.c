@@ -14,6 +14,7 @@ typedef struct csg_cross_state {
     float at[3];
     uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     bool known;
+    bool changed; /* since the round before */
     uint8_t moves;
     uint8_t tries;   /* places that a smooth one's apex has had */
     bool waits;      /* vertices of it were put back: it is to be settled again */
@@ -58,15 +59,15 @@ void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
         const csg_feature *f = &cross->near.store->features[i];
         cross_state *state = &cross->states[i];
         size_t bytes = f->side_count * sizeof f->triangle[0];
-        changed = changed || !state->known || memcmp(state->triangle, f->triangle, bytes) != 0 ||
-                  state->moves != f->moves || memcmp(state->at, f->at, sizeof f->at) != 0;
+        state->changed = !state->known || memcmp(state->triangle, f->triangle, bytes) != 0 ||
+                         state->moves != f->moves || memcmp(state->at, f->at, sizeof f->at) != 0;
+        changed = changed || state->changed;
         memcpy(state->at, f->at, sizeof f->at);
         memcpy(state->triangle, f->triangle, bytes);
         state->known = true;
         state->waits = false;
         state->moves = f->moves;
     }
-    csg_near_measure(&cross->near, index);
     cross->blocks[index] = changed ? CHANGED : 0;
 }
 
@@ -86,15 +87,37 @@ bool csg_feature_cross_is_awake(const csg_feature_cross *cross, size_t block)
     return cross->blocks[block] & AWAKE;
 }
 
+void csg_feature_cross_measure(csg_feature_cross *cross, size_t block)
+{
+    if (csg_feature_cross_is_awake(cross, block))
+        csg_near_measure(&cross->near, block);
+}
+
 static bool note(void *user, const csg_near_triangle *s, const csg_near_triangle *t)
 {
+    return false;
+}
+
+/* Whether something that has changed comes near the block's triangles: of those that have not, all
+ * is known. */
+static bool is_touched(const csg_feature_cross *cross, size_t index)
+{
+    const csg_feature_store *store = cross->near.store;
+    const csg_near_box box = csg_near_box_of_block(&cross->near, index);
+    for (int k = 0; k < CSG_NEAR_BLOCKS; k++) {
+        const csg_feature_block *around = csg_near_block(store, &store->blocks[index], k);
+        for (uint32_t i = 0; around && i < around->count; i++)
+            if (cross->states[around->first + i].changed &&
+                csg_near_reaches(&cross->near, around->first + i, &box))
+                return true;
+    }
     return false;
 }
 
 bool csg_feature_cross_test(csg_feature_cross *cross, uint32_t worker, size_t block)
 {
     csg_near_room *room = &cross->rooms[worker];
-    if (!csg_feature_cross_is_awake(cross, block))
+    if (!csg_feature_cross_is_awake(cross, block) || !is_touched(cross, block))
         return true;
     if (!csg_near_collect(&cross->near, room, block))
         return false;
@@ -137,6 +160,8 @@ static bool is_past(const csg_feature_cross *cross, const uint32_t owners[4])
 static void has_changed(csg_feature_cross *cross, uint32_t feature)
 {
     cross->states[feature].search = cross->search;
+    cross->states[feature].known =
+        false; /* even if it is as it was: pairs of it were passed over */
     cross->has_changed = true;
 }
 

@@ -26,10 +26,11 @@ bool csg_feature_cross_begin(csg_feature_cross *cross);
 void csg_feature_cross_end(csg_feature_cross *cross);
 
 /* A round, once flips are done: the first for all blocks, any thread; then the second, one thread;
- * then the third for all blocks, any thread; then the last, one thread: how many features have
- * changed, whose flips are to be done again. False: out of memory. */
+ * then the third for all blocks, any thread, and the fourth; then the last, one thread: how many
+ * features have changed, whose flips are to be done again. False: out of memory. */
 void csg_feature_cross_look(csg_feature_cross *cross, size_t block);
 void csg_feature_cross_wake(csg_feature_cross *cross);
+void csg_feature_cross_measure(csg_feature_cross *cross, size_t block);
 /* Whether it is to be tested in this round: others need not. */
 bool csg_feature_cross_is_awake(const csg_feature_cross *cross, size_t block);
 bool csg_feature_cross_test(csg_feature_cross *cross, uint32_t worker, size_t block);

@@ -148,6 +148,21 @@ bool csg_feature_cut(const csg_feature *features, const csg_cell_tables *tables,
     return good;
 }
 
+bool csg_feature_is_cut(const csg_feature *features, const csg_cell_tables *tables,
+                        const csg_feature *f)
+{
+    uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
+    piece q = {.features = features, .f = f, .tables = tables, .triangles = triangles};
+    if (!f->creased)
+        return cut_tip(&q);
+    for (int s = 0; s < f->side_count; s++) {
+        q.triangle_count = 0;
+        if (f->creased >> s & 1 && !cut_sheet(&q, s))
+            return false;
+    }
+    return true;
+}
+
 bool csg_feature_cuts_at(const csg_feature *features, const csg_cell_tables *tables,
                          const csg_feature *f, int side)
 {

@@ -12,6 +12,10 @@
 bool csg_feature_cut(const csg_feature *features, const csg_cell_tables *tables,
                      const csg_feature *feature, uint8_t (*triangles)[3]);
 
+/* What csg_feature_cut says, without the triangles. */
+bool csg_feature_is_cut(const csg_feature *features, const csg_cell_tables *tables,
+                        const csg_feature *feature);
+
 /* Whether the two pieces that meet at a creased side can be cut so that nothing folds over. */
 bool csg_feature_cuts_at(const csg_feature *features, const csg_cell_tables *tables,
                          const csg_feature *feature, int side);

@@ -60,8 +60,7 @@ static unsigned shares_of(const csg_feature *f)
 static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables,
                    const csg_feature *f)
 {
-    uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
-    bool good = csg_feature_cut(store->features, tables, f, triangles);
+    bool good = csg_feature_is_cut(store->features, tables, f);
     for (int s = 0; s < f->side_count && good; s++)
         if (f->flipped >> s & 1)
             good = csg_feature_cuts_at(store->features, tables, &store->features[f->side[s].beyond],

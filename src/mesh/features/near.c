@@ -65,6 +65,37 @@ const csg_feature_block *csg_near_block(const csg_feature_store *store,
     return csg_feature_store_find(store, at);
 }
 
+/* ---- boxes -------------------------------------------------------------------------------------
+ */
+
+static const csg_near_box NOWHERE = {{INFINITY, INFINITY, INFINITY},
+                                     {-INFINITY, -INFINITY, -INFINITY}};
+
+static void include(csg_near_box *box, const float low[3], const float high[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->low[axis] = low[axis] < box->low[axis] ? low[axis] : box->low[axis];
+        box->high[axis] = high[axis] > box->high[axis] ? high[axis] : box->high[axis];
+    }
+}
+
+static void set_box(csg_near_triangle *t)
+{
+    t->box = NOWHERE;
+    for (int c = 0; c < 3; c++)
+        include(&t->box, t->shape.at[c], t->shape.at[c]);
+}
+
+/* Whether two boxes come within `reach` of each other along each axis. */
+static bool overlap(const csg_near_box *a, const csg_near_box *b, float reach)
+{
+    bool apart = false;
+    for (int axis = 0; axis < 3; axis++)
+        apart =
+            apart || a->low[axis] - reach > b->high[axis] || b->low[axis] - reach > a->high[axis];
+    return !apart;
+}
+
 /* ---- triangles of features ---------------------------------------------------------------------
  */
 
@@ -125,6 +156,7 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
         in_face = in_face || is_in_face(m->tables, corners[c].edge, cell, beside);
     }
     t->plain = !moved && (t->owner[1] == i || (with_apex && in_face));
+    set_box(t);
 }
 
 /* ---- where they are ----------------------------------------------------------------------------
@@ -249,45 +281,59 @@ static bool enter_cells(const view *v, const int low[3], const int high[3], uint
 /* ---- collecting --------------------------------------------------------------------------------
  */
 
-static const csg_near_box NOWHERE = {{INFINITY, INFINITY, INFINITY},
-                                     {-INFINITY, -INFINITY, -INFINITY}};
-
-static void include(csg_near_box *box, const float low[3], const float high[3])
-{
-    for (int axis = 0; axis < 3; axis++) {
-        box->low[axis] = low[axis] < box->low[axis] ? low[axis] : box->low[axis];
-        box->high[axis] = high[axis] > box->high[axis] ? high[axis] : box->high[axis];
-    }
-}
-
-static csg_near_box box_of(const csg_near_triangle *t)
+/* Of all its triangles' corners. */
+static csg_near_box box_of(const csg_near *near, const csg_feature *f)
 {
     csg_near_box box = NOWHERE;
-    for (int c = 0; c < 3; c++)
-        include(&box, t->shape.at[c], t->shape.at[c]);
+    uint64_t seen[4] = {0}; /* by what a triangle calls a corner, a bit each */
+    for (int k = 0; k < csg_feature_triangle_count(f); k++)
+        for (int c = 0; c < 3; c++) {
+            uint8_t t = f->triangle[k][c];
+            if (seen[t / 64] >> t % 64 & 1)
+                continue;
+            seen[t / 64] |= (uint64_t)1 << t % 64;
+            const csg_feature *apex =
+                t == CSG_FEATURE_APEX ? f
+                : t >= CSG_FEATURE_BEYOND
+                    ? &near->store->features[f->side[t - CSG_FEATURE_BEYOND].beyond]
+                    : NULL;
+            float at[3];
+            csg_marching_shift(near->marching, apex ? apex->at : f->side[t].corner, at);
+            include(&box, at, at);
+        }
     return box;
-}
-
-static bool overlap(const csg_near_box *a, const csg_near_box *b)
-{
-    bool apart = false;
-    for (int axis = 0; axis < 3; axis++)
-        apart = apart || a->low[axis] > b->high[axis] || b->low[axis] > a->high[axis];
-    return !apart;
 }
 
 void csg_near_measure(const csg_near *near, size_t index)
 {
-    view v = view_of(near, NULL, index);
-    for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++) {
-        near->boxes[i] = NOWHERE;
-        for (int k = 0; k < csg_feature_triangle_count(&near->store->features[i]); k++) {
-            csg_near_triangle t;
-            triangle_of(&v, v.block, i, k, &t);
-            csg_near_box box = box_of(&t);
-            include(&near->boxes[i], box.low, box.high);
-        }
-    }
+    const csg_feature_block *block = &near->store->blocks[index];
+    for (uint32_t i = block->first; i < block->first + block->count; i++)
+        near->boxes[i] = box_of(near, &near->store->features[i]);
+}
+
+csg_near_box csg_near_box_of_block(const csg_near *near, size_t index)
+{
+    const csg_feature_block *block = &near->store->blocks[index];
+    csg_near_box box = NOWHERE;
+    for (uint32_t i = block->first; i < block->first + block->count; i++)
+        include(&box, near->boxes[i].low, near->boxes[i].high);
+    return box;
+}
+
+/* Where triangles that are far from their cells must keep apart. */
+static float reach_of(const csg_near *near)
+{
+    return 2 * near->marching->unit;
+}
+
+bool csg_near_reaches(const csg_near *near, uint32_t feature, const csg_near_box *box)
+{
+    const csg_feature *f = &near->store->features[feature];
+    bool reaches = overlap(&near->boxes[feature], box, reach_of(near));
+    for (int s = 0; s < f->side_count && !reaches; s++)
+        reaches = f->side[s].beyond != CSG_FEATURE_NONE &&
+                  overlap(&near->boxes[f->side[s].beyond], box, reach_of(near));
+    return reaches;
 }
 
 static bool add_triangle(const view *v, const csg_feature_block *block, const csg_near_triangle *t)
@@ -307,14 +353,13 @@ static bool add_block(const view *v, const csg_feature_block *block, const csg_n
 {
     const csg_near *near = v->near;
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
-        if (within && !overlap(within, &near->boxes[i]))
+        if (within && !overlap(within, &near->boxes[i], 0))
             continue;
         for (int index = 0; index < csg_feature_triangle_count(&near->store->features[i]);
              index++) {
             csg_near_triangle t;
             triangle_of(v, block, i, index, &t);
-            csg_near_box box = box_of(&t);
-            if ((!within || overlap(within, &box)) && !add_triangle(v, block, &t))
+            if ((!within || overlap(within, &t.box, 0)) && !add_triangle(v, block, &t))
                 return false;
         }
     }
@@ -364,15 +409,13 @@ static bool reserve_cells(csg_memory *memory, csg_near_room *room)
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
 {
     view v = view_of(near, room, index);
-    csg_near_box within = NOWHERE;
     if (!reserve_cells(near->memory, room))
         return false;
     room->count = room->place_count = 0;
     memset(room->own_cells, 0, sizeof room->own_cells);
     if (!add_block(&v, v.block, NULL))
         return false;
-    for (uint32_t i = v.block->first; i < v.block->first + v.block->count; i++)
-        include(&within, near->boxes[i].low, near->boxes[i].high);
+    const csg_near_box within = csg_near_box_of_block(near, index);
     for (int k = 0; k < CSG_NEAR_BLOCKS; k++) {
         const csg_feature_block *other =
             k == ITSELF ? NULL : csg_near_block(near->store, v.block, k);
@@ -447,6 +490,7 @@ static int smooth_triangles(const view *v, const int at[3],
                 csg_marching_shift(m, found->at[edge[c]], to->shape.at[c]);
                 to->shape.vertex[c] = number_of_edge(v, at, edge[c]);
             }
+            set_box(to);
         }
     return count;
 }
@@ -458,9 +502,35 @@ static int smooth_triangles(const view *v, const int at[3],
  * decimals are off: half a unit in the last place each coordinate, two points by less than two. */
 static bool meet(const view *v, const csg_near_triangle *s, const csg_near_triangle *t)
 {
-    double reach = 2 * (double)v->near->marching->unit;
-    return csg_exact_meet(&s->shape, &t->shape) ||
-           (s->far && t->far && csg_exact_nearly_meet(&s->shape, &t->shape, reach));
+    bool is_far = s->far && t->far;
+    float reach = reach_of(v->near);
+    return overlap(&s->box, &t->box, is_far ? reach : 0) &&
+           (csg_exact_meet(&s->shape, &t->shape) ||
+            (is_far && csg_exact_nearly_meet(&s->shape, &t->shape, (double)reach)));
+}
+
+/* Whether the plane of a triangle passes a cell: where none does, what marching cubes makes there
+ * is of no interest. */
+static bool passes(const view *v, const csg_near_triangle *t, const int cell[3])
+{
+    const csg_marching *m = v->near->marching;
+    const double size = m->lattice->cell_size;
+    const double half = (0.5 + 10 * CLEAR) * size + 2 * (double)m->unit;
+    const double origin[3] = {m->lattice->origin.x, m->lattice->origin.y, m->lattice->origin.z};
+    const double shift[3] = {m->shift.x, m->shift.y, m->shift.z};
+    double u[3], w[3], away = 0, reach = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        u[axis] = (double)t->shape.at[1][axis] - (double)t->shape.at[0][axis];
+        w[axis] = (double)t->shape.at[2][axis] - (double)t->shape.at[0][axis];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        double n = u[i] * w[j] - u[j] * w[i];
+        double middle = origin[axis] + shift[axis] + (cell[axis] + 0.5) * size;
+        away += n * (middle - (double)t->shape.at[0][axis]);
+        reach += half * fabs(n);
+    }
+    return fabs(away) <= reach;
 }
 
 /* The triangles entered into one cell. */
@@ -479,9 +549,10 @@ static bool search_cell(const view *v, const uint64_t *places, size_t count, csg
             if ((t->own || t->owner[0] > s->owner[0]) && meet(v, s, t) && !found(user, s, t))
                 return false;
         }
-        if (smooth_count < 0)
+        bool is_alone = s->far && !passes(v, s, cell);
+        if (smooth_count < 0 && !is_alone)
             smooth_count = smooth_triangles(v, cell, smooth);
-        for (int k = 0; k < smooth_count; k++)
+        for (int k = 0; k < smooth_count && !is_alone; k++)
             if (meet(v, s, &smooth[k]) && !found(user, s, &smooth[k]))
                 return false;
     }

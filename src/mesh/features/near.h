@@ -11,19 +11,20 @@
 #include "mesh/features/exact.h"
 #include "mesh/features/features.h"
 
+/* In the mesh's frame. */
+typedef struct csg_near_box {
+    float low[3], high[3];
+} csg_near_box;
+
 typedef struct csg_near_triangle {
     csg_exact_triangle shape; /* vertices: numbers of this search */
+    csg_near_box box;         /* around it */
     uint32_t owner[2]; /* features; one twice where it is one's alone, NONE: of a smooth polygon */
     bool own;          /* of the block at hand */
     bool far;          /* reaches out of its cell, and not only to the apex next door */
     bool plain; /* no vertex has moved; with the feature's apex, or none; and with one next door
                    only if it has a corner in the face between */
 } csg_near_triangle;
-
-/* In the mesh's frame. */
-typedef struct csg_near_box {
-    float low[3], high[3];
-} csg_near_box;
 
 enum { CSG_NEAR_VIEW = 64 }; /* cells along each axis that a search sees: eight blocks */
 
@@ -59,6 +60,10 @@ typedef struct csg_near {
 
 /* The boxes of a block's features. */
 void csg_near_measure(const csg_near *near, size_t block);
+/* Around the features of a block, whose boxes are known. */
+csg_near_box csg_near_box_of_block(const csg_near *near, size_t block);
+/* Whether triangles of a feature, or of one next to it, come near a box; their boxes are known. */
+bool csg_near_reaches(const csg_near *near, uint32_t feature, const csg_near_box *box);
 /* All triangles that can meet one of the block's; boxes are known. False: out of memory. */
 bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t block);
 

@@ -229,6 +229,14 @@ static bool look_item(void *user, uint32_t worker, size_t item)
     return true;
 }
 
+static bool measure_item(void *user, uint32_t worker, size_t item)
+{
+    uncrossing *u = user;
+    (void)worker;
+    csg_feature_cross_measure(&u->cross, item);
+    return true;
+}
+
 static bool test_item(void *user, uint32_t worker, size_t item)
 {
     uncrossing *u = user;
@@ -300,6 +308,7 @@ static bool settle_rounds(uncrossing *u)
         csg_pool_run(pool, c->store.block_count, flip_item, NULL, c);
         csg_pool_run(pool, c->store.block_count, look_item, NULL, u);
         csg_feature_cross_wake(&u->cross);
+        csg_pool_run(pool, c->store.block_count, measure_item, NULL, u);
         if (!test_blocks(u))
             return false;
         if (!csg_feature_cross_mend(&u->cross, &changed))

@@ -9,12 +9,6 @@
 /* Points for which lanes pay, and for which it pays to bring those together that lie together. */
 enum { FEWEST = 2, WORTH_ORDER = 3 * CSG_SHAPE_LANES };
 
-typedef struct parts {
-    const csg_tree *tree;
-    const uint32_t *items;
-    uint32_t count;
-} parts;
-
 /* ---- order ------------------------------------------------------------------------------------
  */
 
@@ -57,26 +51,32 @@ static void put_in_order(const csg_vec3 *at, size_t count, uint16_t *order)
 /* ---- searching --------------------------------------------------------------------------------
  */
 
+static void keep_hint(const csg_triangle_hit *hit, uint32_t *hint)
+{
+    if (hit->place != CSG_TREE_NONE)
+        *hint = hit->place;
+}
+
 /* The last point is in the lanes that are left over. */
-static void search_lanes(const parts *p, const csg_shape_kernel *kernel, const csg_vec3 *at,
-                         const uint16_t *order, size_t count, uint32_t *hint, csg_triangle_hit *out)
+static void search_lanes(const csg_tree *tree, const csg_tree_parts *parts,
+                         const csg_shape_kernel *kernel, const csg_vec3 *at, const uint16_t *order,
+                         size_t count, uint32_t *hint, csg_triangle_hit *out)
 {
     csg_vec3 points[CSG_SHAPE_LANES];
     csg_triangle_hit hits[CSG_SHAPE_LANES];
     for (size_t l = 0; l < CSG_SHAPE_LANES; l++)
         points[l] = at[order[l < count ? l : count - 1]];
-    kernel->nearest_triangles(p->tree, p->items, p->count, points, count, *hint, hits);
+    kernel->nearest_triangles(tree, parts, points, count, *hint, hits);
     for (size_t l = 0; l < count; l++)
         out[order[l]] = hits[l];
-    *hint = hits[count - 1].place;
+    keep_hint(&hits[count - 1], hint);
 }
 
-void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel, const uint32_t *items,
-                       uint32_t item_count, const csg_vec3 *at, size_t count, csg_triangle_hit *out)
+void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel,
+                       const csg_tree_parts *parts, const csg_vec3 *at, size_t count,
+                       csg_triangle_hit *out)
 {
-    static const uint32_t ROOT = 0;
-    const parts p = {tree, items ? items : &ROOT, items ? item_count : 1};
-    uint32_t hint = CSG_TREE_NO_HINT;
+    uint32_t hint = CSG_TREE_NONE;
     uint16_t order[CSG_PACKET_MOST];
     if (count >= WORTH_ORDER)
         put_in_order(at, count, order);
@@ -85,13 +85,12 @@ void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel, con
     for (size_t i = 0, used; i < count; i += used) {
         used = count - i < CSG_SHAPE_LANES ? count - i : CSG_SHAPE_LANES;
         if (kernel && used >= FEWEST) {
-            search_lanes(&p, kernel, at, order + i, used, &hint, out);
+            search_lanes(tree, parts, kernel, at, order + i, used, &hint, out);
             continue;
         }
         for (size_t k = i; k < i + used; k++) {
-            csg_triangle_hit *hit = &out[order[k]];
-            *hit = csg_tree_nearest_of(tree, p.items, p.count, at[order[k]], hint);
-            hint = hit->place;
+            out[order[k]] = csg_tree_nearest_of(tree, parts, at[order[k]], hint);
+            keep_hint(&out[order[k]], &hint);
         }
     }
 }

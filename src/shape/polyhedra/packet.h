@@ -10,10 +10,10 @@
 /* Points of a packet at most. */
 enum { CSG_PACKET_MOST = 256 };
 
-/* out[i] is what csg_tree_nearest_of finds for at[i] in these parts of the tree; items NULL: what
- * csg_tree_nearest finds. Points within 2^60 of the frame. kernel: NULL for one by one. */
-void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel, const uint32_t *items,
-                       uint32_t item_count, const csg_vec3 *at, size_t count,
+/* out[i] is what csg_tree_nearest_of finds for at[i] in these parts of the tree. Points within 2^60
+ * of the frame. kernel: NULL for one by one. */
+void csg_packet_search(const csg_tree *tree, const csg_shape_kernel *kernel,
+                       const csg_tree_parts *parts, const csg_vec3 *at, size_t count,
                        csg_triangle_hit *out);
 
 #endif

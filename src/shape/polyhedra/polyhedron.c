@@ -25,8 +25,8 @@ typedef struct polyhedron {
     uint64_t hash;
     bool is_convex;
     uint32_t (*beside)[3]; /* per triangle in the tree, along each edge: the other triangle there */
-    atomic_uchar
-        *plain; /* per triangle in the tree: whether csg_tree_is_plain, once it was asked */
+    atomic_uchar *plain; /* per triangle in the tree: whether it is (csg_tree_plain_group), once it
+                            was asked */
 } polyhedron;
 
 enum { PLAIN_UNKNOWN, PLAIN_NO, PLAIN_YES };
@@ -51,8 +51,8 @@ typedef struct known_point {
 /* Goes from point to point. */
 typedef struct walker {
     const polyhedron *solid;
-    const csg_shape_near *near; /* NULL: all of it */
-    double limit;               /* frame units: up to there distances are exact */
+    csg_tree_parts parts;
+    double limit;          /* frame units: up to there distances are exact */
     known_point last, row; /* the last point, and the last that did not share a row with its last */
     uint32_t hint;
 } walker;
@@ -65,21 +65,26 @@ typedef struct found {
     bool is_located, inside;
 } found;
 
-/* No triangle, or several. */
-#define NO_PLACE UINT32_MAX
+static const uint32_t ROOT = 0;
 
 /* More than points and their feet are moved by rounding. */
 static const double LEAST = 0x1p-36;
 
 /* Threads may find it twice; they find the same. */
+static bool find_plain(const polyhedron *solid, uint32_t place)
+{
+    uint32_t first = place - place % CSG_TREE_GROUP;
+    uint32_t plain = csg_tree_plain_group(&solid->tree, solid->beside, first);
+    for (uint32_t i = 0; i < CSG_TREE_GROUP && first + i < solid->tree.count; i++)
+        atomic_store_explicit(&solid->plain[first + i], plain >> i & 1 ? PLAIN_YES : PLAIN_NO,
+                              memory_order_relaxed);
+    return plain >> (place - first) & 1;
+}
+
 static bool is_plain(const polyhedron *solid, uint32_t place)
 {
     int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
-    if (known == PLAIN_UNKNOWN) {
-        known = csg_tree_is_plain(&solid->tree, place) ? PLAIN_YES : PLAIN_NO;
-        atomic_store_explicit(&solid->plain[place], (unsigned char)known, memory_order_relaxed);
-    }
-    return known == PLAIN_YES;
+    return known == PLAIN_UNKNOWN ? find_plain(solid, place) : known == PLAIN_YES;
 }
 
 /* Edges that count as convex may bend the other way by 2^-30 (convex.c): farther from the surface
@@ -149,7 +154,7 @@ static bool read_side(const polyhedron *solid, found *f, double free, int *windi
         return csg_vec3_dot(away, outward(t)) > -ALONG * csg_vec3_norm(away);
     }
     uint32_t other = solid->beside[place][f->part];
-    if (other == NO_PLACE || !is_plain_beyond(solid, other, free))
+    if (other == CSG_TREE_NONE || !is_plain_beyond(solid, other, free))
         return false;
     csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
@@ -203,10 +208,7 @@ static bool is_inside(walker *w, found *f, double distance)
 /* p is in frame units, within 2^60. */
 static csg_triangle_hit find_nearest(walker *w, csg_vec3 p)
 {
-    const csg_tree *tree = &w->solid->tree;
-    csg_triangle_hit hit =
-        w->near ? csg_tree_nearest_of(tree, w->near->items, w->near->count, p, w->hint)
-                : csg_tree_nearest(tree, p, w->hint);
+    csg_triangle_hit hit = csg_tree_nearest_of(&w->solid->tree, &w->parts, p, w->hint);
     w->hint = hit.place;
     return hit;
 }
@@ -220,10 +222,13 @@ static found look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest)
 
 static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
 {
-    return (walker){.solid = solid,
-                    .near = near,
-                    .limit = near ? near->limit * solid->frame.scale : INFINITY,
-                    .hint = near ? CSG_TREE_NO_HINT : 0};
+    walker w = {
+        .solid = solid, .parts = {&ROOT, 1, INFINITY}, .limit = INFINITY, .hint = CSG_TREE_NONE};
+    if (near) {
+        w.parts = (csg_tree_parts){near->items, near->count, INFINITY};
+        w.limit = near->limit * solid->frame.scale;
+    }
+    return w;
 }
 
 /* So far away that the solid is a point; also whatever is not a number. */
@@ -321,12 +326,20 @@ static void sample_far(const polyhedron *solid, const packet *k, float *out, csg
     }
 }
 
+/* Samples of a part of a block and more, where most points are so far away that no more than the
+ * sign matters. */
+enum { MANY = 100 };
+
+/* Where many values are asked for, what is beyond the limit is not looked for. */
 static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
                         const csg_shape_near *near, packet *k, float *out, csg_vec3 *gradients)
 {
     walker w = begin_walk(solid, near);
-    csg_packet_search(&w.solid->tree, kernel, near ? near->items : NULL, near ? near->count : 0,
-                      k->at, k->count, k->nearest);
+    if (near && !gradients && k->count >= MANY) {
+        double most = w.limit * (1 + 0x1p-20);
+        w.parts.most = most * most;
+    }
+    csg_packet_search(&w.solid->tree, kernel, &w.parts, k->at, k->count, k->nearest);
     for (size_t i = 0; i < k->count; i++) {
         found f = look_up(&w, k->at[i], k->nearest[i]);
         out[i] = (float)signed_distance(solid, &f);
@@ -558,7 +571,8 @@ static bool make_beside(csg_arena *scratch, polyhedron *solid, const csg_triangl
         const csg_edge *edge = &edges->edges[edges->of_half[half]];
         const uint32_t *halves = edges->halves + edge->first;
         uint32_t other = halves[halves[0] == half];
-        solid->beside[places[half / 3]][half % 3] = edge->count == 2 ? places[other / 3] : NO_PLACE;
+        solid->beside[places[half / 3]][half % 3] =
+            edge->count == 2 ? places[other / 3] : CSG_TREE_NONE;
     }
     return true;
 }

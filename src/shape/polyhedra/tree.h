@@ -57,12 +57,20 @@ typedef struct csg_triangle_hit {
 
 /* p within 2^60 of the frame. hint: a place to begin with, any will do, a near one is quicker. */
 csg_triangle_hit csg_tree_nearest(const csg_tree *tree, csg_vec3 p, uint32_t hint);
-/* The same in parts of the tree: below nodes, or (CSG_TREE_LEAVES_ONLY) in the leaves right below.
- * hint: in one of them, or CSG_TREE_NO_HINT. */
-csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                                     csg_vec3 p, uint32_t hint);
+/* Parts of the tree: below nodes, or (CSG_TREE_LEAVES_ONLY) in the leaves right below; and the
+ * squared distance beyond which nothing is looked for, infinite where everything is. */
+typedef struct csg_tree_parts {
+    const uint32_t *items;
+    uint32_t count;
+    double most;
+} csg_tree_parts;
+
+/* The same in parts of the tree. hint: in one of them, or CSG_TREE_NONE. The hit is of no triangle,
+ * CSG_TREE_NONE, at distance `most` where none is as near. */
+csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const csg_tree_parts *parts, csg_vec3 p,
+                                     uint32_t hint);
 #define CSG_TREE_LEAVES_ONLY 0x80000000u
-#define CSG_TREE_NO_HINT UINT32_MAX
+#define CSG_TREE_NONE UINT32_MAX
 
 /* A box or rectangle is passed over only when its squared distance in float is above the best times
  * CSG_TREE_SLACK (tree_nearest.c says why); csg_tree_error: more than positions near a point, and
@@ -109,9 +117,12 @@ bool csg_tree_in_box(const csg_tree *tree, csg_box box, csg_tree_visit *visit, v
 /* Whether the winding number is 1 behind the middle of a triangle and 0 before it, right beside it.
  */
 bool csg_tree_is_clear(const csg_tree *tree, uint32_t place);
-/* Whether a triangle neither crosses nor touches others but where they share corners, is no needle
- * and is clear. */
-bool csg_tree_is_plain(const csg_tree *tree, uint32_t place);
+/* Which triangles of the group at `first`, a multiple of CSG_TREE_GROUP, are plain, a bit each:
+ * they neither cross nor touch others but where they share corners, are no needles and are clear.
+ * beside: per place, along each edge, the place of the other of its two triangles, or
+ * CSG_TREE_NONE. */
+enum { CSG_TREE_GROUP = 16 };
+uint32_t csg_tree_plain_group(const csg_tree *tree, uint32_t (*beside)[3], uint32_t first);
 
 /* Chooses which triangles count; NULL: all. */
 typedef struct csg_tree_filter {

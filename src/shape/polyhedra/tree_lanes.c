@@ -185,12 +185,13 @@ static inline void push_near(const csg_tree_node *node, const search *s, waiting
 
 /* Pushes what may be near enough of all items, and brings the nearest to the top: once it has been
  * looked into, most of the others are too far away. */
-static inline void push_items(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                              const search *s, waiting *w)
+static inline void push_items(const csg_tree *tree, const csg_tree_parts *parts, const search *s,
+                              waiting *w)
 {
+    const uint32_t *items = parts->items;
     size_t nearest = 0;
     float least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < parts->count; i++) {
         const csg_tree_node *node = &tree->nodes[items[i] & ~CSG_TREE_LEAVES_ONLY];
         for (uint32_t slot = 0; slot < 4; slot++) {
             if (items[i] & CSG_TREE_LEAVES_ONLY && !(node->children[slot] & CSG_TREE_LEAF))
@@ -228,8 +229,8 @@ static inline void search_tree(const csg_tree *tree, uint32_t hint, search *s, w
     }
 }
 
-static void search_some(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                        const csg_vec3 *points, uint32_t hint, csg_triangle_hit *hits)
+static void search_some(const csg_tree *tree, const csg_tree_parts *parts, const csg_vec3 *points,
+                        uint32_t hint, csg_triangle_hit *hits)
 {
     const mask all = ~(mask){0};
     search s;
@@ -249,24 +250,24 @@ static void search_some(const csg_tree *tree, const uint32_t *items, uint32_t co
     s.at[0] = __builtin_convertvector(s.x, narrow);
     s.at[1] = __builtin_convertvector(s.y, narrow);
     s.at[2] = __builtin_convertvector(s.z, narrow);
-    s.squared = s.x * 0 + INFINITY;
-    s.place = s.x * 0;
-    if (hint != CSG_TREE_NO_HINT)
+    s.squared = s.x * 0 + parts->most;
+    s.place = s.x * 0 + (double)CSG_TREE_NONE;
+    if (hint != CSG_TREE_NONE)
         try_triangle(&tree->triangles[hint], (double)hint, &all, &s);
     set_limit(&s);
     w.depth = 0;
-    push_items(tree, items, count, &s, &w);
+    push_items(tree, parts, &s, &w);
     search_tree(tree, hint, &s, &w);
     for (int l = 0; l < LANES; l++)
         hits[l] = (csg_triangle_hit){s.squared[l], (uint32_t)s.place[l], 0};
 }
 
-void CSG_SHAPE_BUILD(csg_nearest_triangles)(const csg_tree *tree, const uint32_t *items,
-                                            uint32_t count, const csg_vec3 *points, size_t used,
-                                            uint32_t hint, csg_triangle_hit *hits)
+void CSG_SHAPE_BUILD(csg_nearest_triangles)(const csg_tree *tree, const csg_tree_parts *parts,
+                                            const csg_vec3 *points, size_t used, uint32_t hint,
+                                            csg_triangle_hit *hits)
 {
     for (size_t l = 0; l < used; l += LANES) {
-        search_some(tree, items, count, points + l, hint, hits + l);
-        hint = hits[l].place;
+        search_some(tree, parts, points + l, hint, hits + l);
+        hint = hits[l].place == CSG_TREE_NONE ? hint : hits[l].place;
     }
 }

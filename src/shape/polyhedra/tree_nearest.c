@@ -253,19 +253,21 @@ static const csg_tree_leaf *near_leaf(const csg_tree *tree, const uint32_t *item
     return &tree->leaves[child & ~CSG_TREE_LEAF];
 }
 
-csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const uint32_t *items, uint32_t count,
-                                     csg_vec3 p, uint32_t hint)
+csg_triangle_hit csg_tree_nearest_of(const csg_tree *tree, const csg_tree_parts *parts, csg_vec3 p,
+                                     uint32_t hint)
 {
-    csg_triangle_hit best = {INFINITY, UINT32_MAX, 0};
-    if (hint != CSG_TREE_NO_HINT)
-        best = (csg_triangle_hit){triangle_squared(&tree->triangles[hint], p), hint, 0};
+    csg_triangle_hit best = {parts->most, CSG_TREE_NONE, 0};
+    double at_hint = hint == CSG_TREE_NONE ? INFINITY : triangle_squared(&tree->triangles[hint], p);
+    if (at_hint <= best.squared && hint != CSG_TREE_NONE)
+        best = (csg_triangle_hit){at_hint, hint, 0};
     query q = query_of(p, best.squared);
-    if (hint == CSG_TREE_NO_HINT)
-        try_leaf(tree, near_leaf(tree, items, count, q.p), p, &q, &best);
+    if (best.squared == INFINITY)
+        try_leaf(tree, near_leaf(tree, parts->items, parts->count, q.p), p, &q, &best);
     entry stack[STACK];
-    for (uint32_t i = 0; i < count; i++) {
-        const csg_tree_node *node = node_of(tree, items[i]);
-        size_t depth = push_near(node, item_distances(node, items[i], q.p), q.limit, stack, 0);
+    for (uint32_t i = 0; i < parts->count; i++) {
+        uint32_t item = parts->items[i];
+        const csg_tree_node *node = node_of(tree, item);
+        size_t depth = push_near(node, item_distances(node, item, q.p), q.limit, stack, 0);
         search(tree, p, stack, depth, &q, &best);
     }
     return best;

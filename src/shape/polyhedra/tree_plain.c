@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Is a triangle's side clear? A closed chain may cross itself, and shells may overlap; the distance
  * is then that to triangles inside the solid too, on both sides of which the field is positive.
- * Where a triangle crosses nothing, the winding number is one all along each of its sides, so one
- * ray per side tells. What is called crossing here may be a touch, never the other way round.
+ * Where a triangle crosses nothing, the winding number is one all along each of its sides, and
+ * along those of its neighbours that cross nothing either: so one ray per side tells for all of
+ * them. What is called crossing here may be a touch, never the other way round.
  */
+#include "base/four.h"
 #include "shape/polyhedra/tree.h"
 
 enum { STACK = 256 };
@@ -146,19 +148,12 @@ static bool is_apart(void *user, uint32_t place)
     const crossing_search *s = user;
     const csg_tree_triangle *t = &s->tree->triangles[place];
     csg_vec3 a = t->a, b = csg_vec3_add(a, t->ab), c = csg_vec3_add(a, t->ac); /* exact */
-    if (is_outside(a.x, b.x, c.x, s->box.min.x, s->box.max.x) ||
+    if (place == s->place || is_outside(a.x, b.x, c.x, s->box.min.x, s->box.max.x) ||
         is_outside(a.y, b.y, c.y, s->box.min.y, s->box.max.y) ||
-        is_outside(a.z, b.z, c.z, s->box.min.z, s->box.max.z) || place == s->place)
+        is_outside(a.z, b.z, c.z, s->box.min.z, s->box.max.z))
         return true;
     corners other = {{a, b, c}};
     return !is_crossing(&s->own, &other);
-}
-
-static bool crosses_some(const csg_tree *tree, uint32_t place)
-{
-    corners own = corners_of(&tree->triangles[place]);
-    crossing_search s = {tree, place, own, box_of(&own)};
-    return !csg_tree_in_box(tree, s.box, is_apart, &s);
 }
 
 /* Next to the middle of the triangle, 2^-30 of the frame away. */
@@ -180,8 +175,151 @@ bool csg_tree_is_clear(const csg_tree *tree, uint32_t place)
     return winding_beside(tree, t, -1) == 1 && winding_beside(tree, t, 1) == 0;
 }
 
-bool csg_tree_is_plain(const csg_tree *tree, uint32_t place)
+/* ---- groups ------------------------------------------------------------------------------------
+ */
+
+enum { MOST_AROUND = 16 * CSG_TREE_GROUP };
+
+/* A box in float, wider by CSG_TREE_PAD. */
+typedef struct wide_box {
+    float low[3], high[3];
+} wide_box;
+
+/* All that the triangles of a group can cross, if it is not too much: places, and their boxes by
+ * fours. */
+typedef struct surroundings {
+    const csg_tree *tree;
+    uint32_t places[MOST_AROUND], count;
+    float low[3][MOST_AROUND], high[3][MOST_AROUND];
+    wide_box box; /* of the group */
+    bool are_all;
+} surroundings;
+
+static inline wide_box wide_box_of(const csg_tree_triangle *t)
 {
-    return !tree->triangles[place].is_needle && csg_tree_is_clear(tree, place) &&
-           !crosses_some(tree, place);
+    const double a[3] = {t->a.x, t->a.y, t->a.z}, ab[3] = {t->ab.x, t->ab.y, t->ab.z},
+                 ac[3] = {t->ac.x, t->ac.y, t->ac.z};
+    wide_box box;
+    for (int k = 0; k < 3; k++) {
+        double low = ab[k] < ac[k] ? ab[k] : ac[k], high = ab[k] < ac[k] ? ac[k] : ab[k];
+        box.low[k] = (float)(a[k] + (low < 0 ? low : 0)) - CSG_TREE_PAD;
+        box.high[k] = (float)(a[k] + (high > 0 ? high : 0)) + CSG_TREE_PAD;
+    }
+    return box;
+}
+
+static bool list_place(void *user, uint32_t place)
+{
+    surroundings *around = user;
+    const wide_box box = wide_box_of(&around->tree->triangles[place]);
+    uint32_t i = around->count;
+    bool is_apart = false;
+    for (int k = 0; k < 3; k++)
+        is_apart = is_apart || box.low[k] > around->box.high[k] || box.high[k] < around->box.low[k];
+    if (is_apart)
+        return true;
+    around->are_all = i < MOST_AROUND;
+    if (!around->are_all)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        around->low[k][i] = box.low[k];
+        around->high[k][i] = box.high[k];
+    }
+    around->places[around->count++] = place;
+    return true;
+}
+
+static void look_around(const csg_tree *tree, uint32_t first, uint32_t count, surroundings *around)
+{
+    wide_box *whole = &around->box;
+    *whole = wide_box_of(&tree->triangles[first]);
+    for (uint32_t i = 1; i < count; i++) {
+        const wide_box box = wide_box_of(&tree->triangles[first + i]);
+        for (int k = 0; k < 3; k++) {
+            whole->low[k] = box.low[k] < whole->low[k] ? box.low[k] : whole->low[k];
+            whole->high[k] = box.high[k] > whole->high[k] ? box.high[k] : whole->high[k];
+        }
+    }
+    around->tree = tree;
+    around->count = 0;
+    around->are_all = true;
+    csg_box box = {csg_vec3_from_floats(whole->low), csg_vec3_from_floats(whole->high)};
+    csg_tree_in_box(tree, box, list_place, around);
+    for (uint32_t i = around->count; i % 4; i++) /* the first again: once more does no harm */
+        for (int k = 0; k < 3; k++) {
+            around->places[i] = around->places[0];
+            around->low[k][i] = around->low[k][0];
+            around->high[k][i] = around->high[k][0];
+        }
+}
+
+/* Of four places from `i` on those whose boxes meet a box, a bit each. */
+static inline unsigned near_of_four(const surroundings *around, uint32_t i, const wide_box *box)
+{
+    csg_four_mask near = csg_four_load(around->low[0] + i) <= csg_four_all(box->high[0]);
+    near &= csg_four_load(around->high[0] + i) >= csg_four_all(box->low[0]);
+    for (int k = 1; k < 3; k++) {
+        near &= csg_four_load(around->low[k] + i) <= csg_four_all(box->high[k]);
+        near &= csg_four_load(around->high[k] + i) >= csg_four_all(box->low[k]);
+    }
+    return csg_four_bits(near);
+}
+
+static bool crosses_some(const csg_tree *tree, uint32_t place, const surroundings *around)
+{
+    corners own = corners_of(&tree->triangles[place]);
+    crossing_search s = {tree, place, own, box_of(&own)};
+    if (!around->are_all)
+        return !csg_tree_in_box(tree, s.box, is_apart, &s);
+    const wide_box box = wide_box_of(&tree->triangles[place]);
+    for (uint32_t i = 0; i < around->count; i += 4)
+        for (unsigned near = near_of_four(around, i, &box); near; near &= near - 1)
+            if (!is_apart(&s, around->places[i + (uint32_t)__builtin_ctz(near)]))
+                return true;
+    return false;
+}
+
+static csg_vec3 normal_of(const csg_tree_triangle *t)
+{
+    return csg_vec3_cross(t->ab, t->ac);
+}
+
+/* Adds to `of` those of a group that hang together with its first by edges of two triangles, none
+ * of which is folded over. */
+static uint32_t spread(const csg_tree *tree, uint32_t (*beside)[3], uint32_t first, uint32_t among,
+                       uint32_t of)
+{
+    uint32_t fresh = of;
+    while (fresh) {
+        uint32_t i = (uint32_t)__builtin_ctz(fresh);
+        csg_vec3 normal = normal_of(&tree->triangles[first + i]);
+        fresh &= fresh - 1;
+        for (int k = 0; k < 3; k++) {
+            uint32_t next = beside[first + i][k] - first; /* large where it is before, or none */
+            if (next >= CSG_TREE_GROUP || !((among & ~of) >> next & 1) ||
+                !(csg_vec3_dot(normal, normal_of(&tree->triangles[first + next])) > 0))
+                continue;
+            of |= 1u << next;
+            fresh |= 1u << next;
+        }
+    }
+    return of;
+}
+
+uint32_t csg_tree_plain_group(const csg_tree *tree, uint32_t (*beside)[3], uint32_t first)
+{
+    uint32_t left = (uint32_t)tree->count - first, apart = 0, plain = 0;
+    uint32_t count = left < CSG_TREE_GROUP ? left : CSG_TREE_GROUP;
+    surroundings around;
+    look_around(tree, first, count, &around);
+    for (uint32_t i = 0; i < count; i++)
+        if (!tree->triangles[first + i].is_needle && !crosses_some(tree, first + i, &around))
+            apart |= 1u << i;
+    while (apart) {
+        uint32_t one = apart & -apart;
+        uint32_t alike = spread(tree, beside, first, apart, one);
+        plain |= csg_tree_is_clear(tree, first + (uint32_t)__builtin_ctz(one)) ? alike : 0;
+        apart &= ~alike;
+    }
+    return plain;
 }
