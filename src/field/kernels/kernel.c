@@ -672,6 +672,17 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     }
 }
 
+static void leaves(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *out)
+{
+    csg_points p = {x, y, z, count};
+    csg_warped_points warped;
+    csg_warped_points_begin(&warped);
+    for (uint32_t n = 0; n < tape->count; n++)
+        if (csg_op_is_leaf(tape->nodes[n].op))
+            CSG_THIS_LEAF_KERNEL.values(tape, &tape->nodes[n], p, out + count * n, &warped);
+}
+
 static void join_alone(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,
                        size_t count)
 {
@@ -691,6 +702,7 @@ const csg_kernel CSG_THIS_KERNEL = {
     .true_gradients = true_gradients,
     .colors = colors,
     .intervals = intervals,
+    .leaves = leaves,
     .warped = warped,
     .join = join_alone,
     .roots = CSG_THIS_ROOTS,

@@ -17,6 +17,8 @@ typedef csg_slopes_walker walker;
 typedef csg_slopes_range range;
 typedef csg_slopes_which which;
 
+enum { CORNERS = 3 /* of a triangle */ };
+
 /* ---- differences and shares --------------------------------------------------------------------
  */
 
@@ -299,32 +301,33 @@ double csg_slopes_value(const operand *o, which w)
     return NAN;
 }
 
-/* By Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12), from its largest operand:
- * convex and falling there, so they rise to the root. */
+/* The root F of sum (f_i - F + w)_+^2 = w^2 (operators.md 12): a quadratic one of those operands
+ * that are active, which are the largest ones, as many as reach it. */
 double csg_slopes_round(const double *values, uint32_t count, double w)
 {
-    enum { STEPS = 40 };
-    double f = -INFINITY;
+    double gaps[CSG_SLOPES_NODES], largest = -INFINITY, excess = 0, sum = 0, squares = 0;
     for (uint32_t i = 0; i < count; i++)
-        f = fmax(f, values[i]);
-    for (int step = 0; step < STEPS; step++) {
-        double squares = -w * w, slope = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            double u = values[i] - f + w;
-            u = u > 0 ? u : 0; /* fmax is a call */
-            squares += u * u;
-            slope += 2 * u;
-        }
-        if (!(squares > 1e-14 * w * w) || !(slope > 0))
-            break;
-        f += squares / slope;
+        largest = values[i] > largest ? values[i] : largest;
+    for (uint32_t i = 0; i < count; i++) { /* in order: they are few */
+        double gap = largest - values[i];
+        uint32_t to = i;
+        for (; to > 0 && gaps[to - 1] > gap; to--)
+            gaps[to] = gaps[to - 1];
+        gaps[to] = gap;
     }
-    return f;
+    for (uint32_t i = 1; i < count && w - gaps[i] > excess; i++) {
+        sum += gaps[i];
+        squares += gaps[i] * gaps[i];
+        double mean = sum / (i + 1), rest = w * w - (squares - sum * mean);
+        excess = w - mean - sqrt((rest > 0 ? rest : 0) / (i + 1));
+    }
+    return largest + (excess > 0 ? excess : 0);
 }
 
 static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
 {
     double values[CSG_SLOPES_NODES];
+    values[0] = -INFINITY; /* set also where there are none */
     for (uint32_t i = 0; i < count; i++)
         values[i] = turn * csg_slopes_value(&of[i], what);
     return turn * csg_slopes_round(values, count, w);
@@ -394,6 +397,7 @@ static bool join_round(walker *w, const csg_tape_node *node)
     }
     double reach = change + 2 * doubt + 1e-5 * size;
     range weights[CSG_SLOPES_NODES];
+    weights[0] = (range){0, 0}; /* set also where there are none */
     for (uint32_t i = 0; i < node->arity; i++) {
         double at = turn * (of[i].value - value) + size;
         weights[i] = (range){fmax(0, at - reach), at + reach};
@@ -442,15 +446,23 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
     return value + turn * (most + 1e-5 * w->flat);
 }
 
+/* Of a leaf, at the corners and at c. */
+static const float *leaf_values(const walker *w, const csg_tape_node *leaf)
+{
+    return w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
+}
+
 /* Over the triangle, from the values at its corners: no farther off than gradients stray from one
  * another, and a concave leaf is nowhere less than there. */
-static void find_range(const walker *w, const csg_tape_node *node, const float *low,
-                       const float *high, operand *leaf)
+static void find_range(const walker *w, const csg_tape_node *node, operand *leaf)
 {
     const csg_cone_ball *balls = leaf->balls.items;
     double stray = 0;
-    leaf->low = fmin((double)low[0], fmin((double)low[1], (double)low[2]));
-    leaf->high = fmax((double)high[0], fmax((double)high[1], (double)high[2]));
+    double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
+    const float *corners = leaf_values(w, node);
+    double a = (double)corners[0], b = (double)corners[1], c = (double)corners[2];
+    leaf->low = fmin(a, fmin(b, c)) - slack;
+    leaf->high = fmax(a, fmax(b, c)) + slack;
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
@@ -508,16 +520,16 @@ double csg_slopes_span(const walker *w, const operand *leaf)
     return most;
 }
 
-/* low, high: of the leaf's value at the corners, and at c behind them. */
-static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, const float *high)
+static bool push_leaf(walker *w, const csg_tape_node *node)
 {
     operand *leaf = &w->stack[w->top++];
     const csg_vec3 at = w->region.c;
     const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     leaf->balls.count = 0;
     leaf->balls.has_edges = leaf->stretched = false;
-    leaf->value = 0.5 * ((double)low[3] + (double)high[3]);
-    leaf->doubt = 0.5 * ((double)high[3] - (double)low[3]) + 1e-6 * fabs(leaf->value);
+    leaf->value = (double)leaf_values(w, node)[CORNERS];
+    leaf->doubt =
+        (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK] + 1e-6 * fabs(leaf->value);
     if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
         take_any(w, leaf);
     leaf->longest = leaf->balls.corner;
@@ -530,7 +542,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
-    find_range(w, node, low, high, leaf);
+    find_range(w, node, leaf);
     double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
     leaf->most = leaf->value + span;
@@ -540,14 +552,13 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
 /* ---- the walk ----------------------------------------------------------------------------------
  */
 
-static bool walk(walker *w, const float *low, const float *high)
+static bool walk(walker *w)
 {
     for (uint32_t i = 0; i < w->tape->count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
-        size_t at = (size_t)i * CSG_OCTANTS;
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op))
-            known = push_leaf(w, node, low + at, high + at);
+            known = push_leaf(w, node);
         else if (csg_op_is_round(node->op))
             known = join_round(w, node);
         else if (csg_op_is_fillet(node->op))
@@ -601,49 +612,73 @@ static double find_longest(const operand *root)
     return most;
 }
 
+/* What the walk has left. False: no bound is known. */
+static bool take_result(const walker *w, csg_gradients *out)
+{
+    const operand *root = &w->stack[0];
+    out->balls = root->balls;
+    out->value = root->value;
+    out->longest = find_longest(root);
+    out->exceeds = exceeds_hull(root);
+    out->low = root->low;
+    out->high = root->high;
+    out->least = root->least;
+    out->most = root->most;
+    out->is_axis_known = false;
+    out->stray = find_stray(root, out);
+    out->doubt = root->doubt;
+    out->has_level = w->has_level;
+    if (w->has_level)
+        out->level = w->level.balls;
+    return out->balls.count > 0;
+}
+
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+                             const csg_gradients_region *regions, size_t count, float *scratch,
+                             size_t scratch_floats, csg_gradients *const *out, bool *is_known)
+{
+    enum { PLACES = CORNERS + 1 };
+    float values[CSG_SLOPES_NODES * PLACES * CSG_OCTANTS];
+    float x[PLACES * CSG_OCTANTS], y[PLACES * CSG_OCTANTS], z[PLACES * CSG_OCTANTS];
+    walker w; /* not filled: its stack is large */
+    for (size_t i = 0; i < count; i++)
+        is_known[i] = false;
+    if (tape->count > CSG_SLOPES_NODES || !tape->count)
+        return;
+    w.kernel = kernel;
+    w.tape = tape;
+    w.scratch = scratch;
+    w.scratch_floats = scratch_floats;
+    w.stride = (PLACES * count + CSG_OCTANTS - 1) / CSG_OCTANTS * CSG_OCTANTS;
+    for (size_t i = 0; i < w.stride; i++) { /* the last ones again, where vectors have more room */
+        size_t n = i < PLACES * count ? i : PLACES * count - 1;
+        const csg_gradients_region *r = &regions[n / PLACES];
+        csg_vec3 p = n % PLACES < CORNERS ? r->triangle[n % PLACES] : r->c;
+        x[i] = (float)p.x;
+        y[i] = (float)p.y;
+        z[i] = (float)p.z;
+    }
+    kernel->leaves(tape, x, y, z, w.stride, values);
+    for (size_t i = 0; i < count; i++) {
+        w.values = values + i * PLACES;
+        w.region = regions[i];
+        w.flat = 0;
+        w.top = 0;
+        w.has_level = false;
+        for (int k = 0; k < CORNERS; k++)
+            w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(w.region.triangle[k], w.region.c)));
+        w.radius = w.flat + w.region.around + sqrt(3.0) * w.region.half;
+        is_known[i] = walk(&w) && take_result(&w, out[i]);
+    }
+}
+
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out)
 {
-    float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS];
-    float x[CSG_OCTANTS], y[CSG_OCTANTS], z[CSG_OCTANTS];
-    walker w; /* not filled: its stack is large */
-    if (tape->count > CSG_SLOPES_NODES || !tape->count)
-        return false;
-    w.kernel = kernel;
-    w.tape = tape;
-    w.region = *region;
-    w.flat = 0;
-    w.scratch = scratch;
-    w.scratch_floats = scratch_floats;
-    w.top = 0;
-    w.has_level = false;
-    for (int k = 0; k < CSG_OCTANTS; k++) {
-        csg_vec3 p = k < 3 ? region->triangle[k] : region->c;
-        x[k] = (float)p.x;
-        y[k] = (float)p.y;
-        z[k] = (float)p.z;
-        w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, region->c)));
-    }
-    w.radius = w.flat + region->around + sqrt(3.0) * region->half;
-    kernel->intervals(tape, x, y, z, 0, NULL, low, high, scratch);
-    if (!walk(&w, low, high))
-        return false;
-    out->balls = w.stack[0].balls;
-    out->value = w.stack[0].value;
-    out->longest = find_longest(&w.stack[0]);
-    out->exceeds = exceeds_hull(&w.stack[0]);
-    out->low = w.stack[0].low;
-    out->high = w.stack[0].high;
-    out->least = w.stack[0].least;
-    out->most = w.stack[0].most;
-    out->is_axis_known = false;
-    out->stray = find_stray(&w.stack[0], out);
-    out->doubt = w.stack[0].doubt;
-    out->has_level = w.has_level;
-    if (w.has_level)
-        out->level = w.level.balls;
-    return out->balls.count > 0;
+    bool is_known;
+    csg_gradients_find_each(kernel, tape, region, 1, scratch, scratch_floats, &out, &is_known);
+    return is_known;
 }
 
 bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)

@@ -51,6 +51,12 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
 
+/* The same of up to CSG_OCTANTS regions in which one tape holds: values of leaves are asked for all
+ * at once. is_known: of which a bound is known. */
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+                             const csg_gradients_region *regions, size_t count, float *scratch,
+                             size_t scratch_floats, csg_gradients *const *out, bool *is_known);
+
 /* The direction that all gradients have in common (csg_cone_find_axis of the balls). */
 bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out);
 

@@ -23,6 +23,8 @@ typedef struct csg_slopes_walker {
     const csg_tape *tape;
     csg_gradients_region region;
     double radius, flat; /* of the ball around c that holds the region; the triangle */
+    const float *values; /* of node number i from i times the stride on */
+    size_t stride;
     float *scratch;
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
