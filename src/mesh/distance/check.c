@@ -328,12 +328,6 @@ static bool has_open(const piece *pieces, size_t count, uint32_t triangle)
     return any;
 }
 
-static bool is_same_tape(const csg_tape *a, const csg_tape *b)
-{
-    return a->count == b->count &&
-           (a->nodes == b->nodes || !memcmp(a->nodes, b->nodes, a->count * sizeof *a->nodes));
-}
-
 /* Those of each tape at once: most have the same one. */
 static void settle_all(const proof *p, settler *s, const piece *pieces, const csg_tape *tapes,
                        answer *answers, size_t count)
@@ -346,7 +340,7 @@ static void settle_all(const proof *p, settler *s, const piece *pieces, const cs
         if (!tapes[i].count)
             answers[i].what = FAR;
         for (size_t k = i; k < count && tapes[i].count && !is_done[i]; k++) {
-            if (is_done[k] || !is_same_tape(&tapes[i], &tapes[k]))
+            if (is_done[k] || !csg_tape_is_same(&tapes[i], &tapes[k]))
                 continue;
             alike[alike_count] = &pieces[k];
             of[alike_count++] = &answers[k];

@@ -71,17 +71,24 @@ typedef struct place {
     csg_vec3 at, slope;
 } place;
 
+/* What the field's gradients say that there is in a cube. */
+typedef enum content { UNKNOWN, NOTHING, SHEET, ANYTHING } content;
+
 /* A cube with the tape that holds in it and around it. */
 typedef struct cube {
     csg_vec3 c;
     double half, around, value; /* in the middle, where the cube is small enough for one sheet */
+    csg_vec3 slope;             /* there */
     place surface;              /* in the cube or a little around, if there is one */
     csg_tape tape;
     double steepest, doubt; /* how fast the field changes at most along the axes, and its rounding
                                there: in a cube that this one is a part of */
     bool has_surface;
-    bool is_sheet; /* with those around it */
-    bool is_bent;  /* where it is one: it may have a crease, or a narrow fillet */
+    bool is_sheet;          /* with those around it */
+    bool is_bent;           /* where it is one: it may have a crease, or a narrow fillet */
+    bool ends;              /* it is not divided */
+    bool is_asked, is_near; /* whether that place is near the mesh, and that it is */
+    content what;
 } cube;
 
 /* ---- the field in a cube --------------------------------------------------------------------- */
@@ -264,9 +271,13 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
     return fmin(distance, far);
 }
 
-static bool is_surface_near(const walk *w, const cube *q)
+static bool is_surface_near(const walk *w, cube *q)
 {
-    return q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface.at, w->error);
+    if (!q->is_asked)
+        q->is_near =
+            q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface.at, w->error);
+    q->is_asked = true;
+    return q->is_near;
 }
 
 /* ---- where a sheet turns -----------------------------------------------------------------------
@@ -288,20 +299,20 @@ static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, csg_plane *
  * show them. */
 static bool find_faces(const walk *w, worker *s, const cube *q, csg_plane faces[2])
 {
-    enum { PLACES = CSG_OCTANTS + 1, PADDED = CSG_OCTANTS + CSG_LANES };
-    float at[3][PADDED] = {{0}}, g[3][PADDED], f[PADDED];
-    csg_plane planes[PLACES] = {{{0, 0, 0}, 0}};
+    float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES], f[CSG_LANES];
+    csg_plane planes[CSG_OCTANTS + 1] = {{{0, 0, 0}, 0}};
     uint32_t count = 0;
-    double least = 1;
-    for (int i = 0; i < PLACES; i++) {
-        double step = i < CSG_OCTANTS ? q->half : 0;
+    double least = 1, step = q->half;
+    for (int i = 0; i < CSG_OCTANTS; i++) {
         at[0][i] = (float)(q->c.x + (i & 1 ? step : -step));
         at[1][i] = (float)(q->c.y + (i & 2 ? step : -step));
         at[2][i] = (float)(q->c.z + (i & 4 ? step : -step));
     }
-    w->remesh->probe.marching->kernel->values_and_gradients(
-        &q->tape, at[0], at[1], at[2], PLACES, f, g[0], g[1], g[2], s->scratch, w->scratch_floats);
-    for (int i = 0; i < PLACES; i++) {
+    w->remesh->probe.marching->kernel->values_and_gradients(&q->tape, at[0], at[1], at[2],
+                                                            CSG_OCTANTS, f, g[0], g[1], g[2],
+                                                            s->scratch, w->scratch_floats);
+    count += find_plane(q->c, q->value, q->slope, &planes[count]);
+    for (int i = 0; i < CSG_OCTANTS; i++) {
         csg_vec3 p = {(double)at[0][i], (double)at[1][i], (double)at[2][i]};
         csg_vec3 slope = {(double)g[0][i], (double)g[1][i], (double)g[2][i]};
         count += find_plane(p, (double)f[i], slope, &planes[count]);
@@ -355,25 +366,35 @@ static bool has_several_balls(const csg_gradients *gradients)
     return (gradients->has_level ? gradients->level.count : gradients->balls.count) > 1;
 }
 
-typedef enum content { NOTHING, SHEET, ANYTHING } content;
-
-/* What the field's gradients say that there is in the cube. */
-static content content_of(const walk *w, worker *s, cube *q)
+/* What these gradients say that there is in the cube. */
+static content content_of(const walk *w, cube *q, const csg_gradients *gradients)
 {
-    const csg_gradients_region all = {{q->c, q->c, q->c}, q->c, 0, q->half};
-    csg_gradients gradients;
-    if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, &all, s->scratch,
-                            w->scratch_floats, &gradients))
-        return ANYTHING;
-    q->steepest = fmin(q->steepest, csg_gradients_steepest(&gradients));
-    q->doubt = fmax(q->doubt, gradients.doubt);
-    if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
-        gradients.most < least_depth(w))
+    q->steepest = fmin(q->steepest, csg_gradients_steepest(gradients));
+    q->doubt = fmax(q->doubt, gradients->doubt);
+    if (is_far_from_zero(w, q) || gradients->least > -least_depth(w) ||
+        gradients->most < least_depth(w))
         return NOTHING; /* or a face that solids share */
-    double leaning = leaning_of(&gradients);
+    double leaning = leaning_of(gradients);
     q->is_sheet = leaning >= LEANING;
     q->is_bent = leaning < LEVEL;
-    return leaning >= (has_several_balls(&gradients) ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+    return leaning >= (has_several_balls(gradients) ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+}
+
+/* Of cubes in which one tape holds. */
+static void find_contents(const walk *w, worker *s, cube *const *cubes, size_t count)
+{
+    csg_gradients_region all[CSG_OCTANTS] = {0};
+    csg_gradients gradients[CSG_OCTANTS], *found[CSG_OCTANTS] = {NULL}; /* not filled: large */
+    bool is_known[CSG_OCTANTS];
+    for (size_t i = 0; i < count; i++) {
+        csg_vec3 c = cubes[i]->c;
+        all[i] = (csg_gradients_region){{c, c, c}, c, 0, cubes[i]->half};
+        found[i] = &gradients[i];
+    }
+    csg_gradients_find_each(w->remesh->probe.marching->kernel, &cubes[0]->tape, all, count,
+                            s->scratch, w->scratch_floats, found, is_known);
+    for (size_t i = 0; i < count; i++)
+        cubes[i]->what = is_known[i] ? content_of(w, cubes[i], &gradients[i]) : ANYTHING;
 }
 
 /* A sheet that has a place near the mesh. Where it turns at some distance from the mesh it is
@@ -404,6 +425,33 @@ static bool is_empty(const walk *w, const cube *q)
            is_far_from_zero(w, q);
 }
 
+/* Of those children whose gradients settle() asks about, if there is no other way; most have one
+ * tape. */
+static void find_contents_of_children(const walk *w, worker *s, cube *children, uint32_t count)
+{
+    bool asks[CSG_OCTANTS] = {false};
+    for (uint32_t i = 0; i < count; i++) {
+        cube *q = &children[i];
+        q->what = UNKNOWN;
+        q->ends = false;
+        if (is_empty(w, q) || (q->is_sheet && is_surface_near(w, q)))
+            continue;
+        q->ends = q->half <= w->least || is_near_mesh(w, q);
+        asks[i] = !q->ends;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        cube *alike[CSG_OCTANTS];
+        uint32_t alike_count = 0;
+        for (uint32_t k = i; k < count && asks[i]; k++)
+            if (asks[k] && csg_tape_is_same(&children[i].tape, &children[k].tape)) {
+                alike[alike_count++] = &children[k];
+                asks[k] = k == i;
+            }
+        if (alike_count)
+            find_contents(w, s, alike, alike_count);
+    }
+}
+
 /* A place of the surface at hand, how far from the mesh it is. */
 static verdict settle(const walk *w, worker *s, cube *q)
 {
@@ -411,23 +459,18 @@ static verdict settle(const walk *w, worker *s, cube *q)
     csg_vec3 p = q->surface.at;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    if (is_empty(w, q))
+    if (is_empty(w, q) || q->what == NOTHING)
         return SETTLED;
-    if (q->is_sheet && is_surface_near(w, q))
+    if (q->what == ANYTHING)
+        return DIVIDE;
+    if (q->what == UNKNOWN && q->is_sheet && is_surface_near(w, q))
         return settle_turns(w, s, q);
-    bool ends = q->half <= w->least || is_near_mesh(w, q), sheet = false;
-    if (!ends) {
-        content what = content_of(w, s, q);
-        if (what != SHEET)
-            return what == NOTHING ? SETTLED : DIVIDE;
-        sheet = true;
-    }
     if (!q->has_surface)
-        return ends ? SETTLED : DIVIDE;
-    if (sheet && is_surface_near(w, q))
+        return q->ends ? SETTLED : DIVIDE;
+    if (q->what == SHEET && is_surface_near(w, q))
         return settle_turns(w, s, q);
     if (!is_border(w, s, q, &q->surface))
-        return ends ? SETTLED : DIVIDE;
+        return q->ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
 }
@@ -476,12 +519,14 @@ static void find_surfaces_of_children(const walk *w, worker *s, const cube *pare
     from.moving_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         children[i].value = from.value[i];
+        children[i].slope = from.slope[i];
         if (!is_empty(w, &children[i]))
             from.moving[from.moving_count++] = i;
     }
     find_surfaces(w, s, &parent->tape, reach_of(&children[0]), &from, is_found);
     for (uint32_t i = 0; i < count; i++) {
         children[i].has_surface = is_found[i];
+        children[i].is_asked = false;
         children[i].surface = (place){from.at[i], from.slope[i]};
     }
 }
@@ -494,8 +539,10 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
     uint32_t count = 0;
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
     bool done = make_children(w, s, parent, children, &count);
-    if (done && count && may_be_sheet(w, children[0].half))
+    if (done && count && may_be_sheet(w, children[0].half)) {
         find_surfaces_of_children(w, s, parent, children, count);
+        find_contents_of_children(w, s, children, count);
+    }
     for (uint32_t i = 0; i < count && done; i++) {
         s->cubes += csg_effort_of(&children[i].tape);
         if (s->cubes > w->most_cubes || depth == DEEPEST) {

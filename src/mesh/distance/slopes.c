@@ -42,10 +42,7 @@ static double span_of(const walker *w, const double at[3], double spread)
            spread * w->radius;
 }
 
-/* By how much the difference of two operands can change. Between faces' normals a unit vector is at
- * most 1 / cos(phi / 4) as far from any other as one of these, where they are phi apart: at most
- * sqrt(2), for a disc without thickness. */
-static double change_of(const walker *w, const operand *a, const operand *b)
+double csg_slopes_change(const walker *w, const operand *a, const operand *b)
 {
     double most = 0;
     bool faces = a->faces || b->faces;
@@ -64,7 +61,7 @@ static double change_of(const walker *w, const operand *a, const operand *b)
 /* By how much it can change from c, within the region. */
 double csg_slopes_reach(const walker *w, const operand *a, const operand *b)
 {
-    return change_of(w, a, b) + a->doubt + b->doubt;
+    return csg_slopes_change(w, a, b) + a->doubt + b->doubt;
 }
 
 /* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
@@ -301,124 +298,6 @@ double csg_slopes_value(const operand *o, which w)
     return NAN;
 }
 
-/* The root F of sum (f_i - F + w)_+^2 = w^2 (operators.md 12): a quadratic one of those operands
- * that are active, which are the largest ones, as many as reach it. */
-double csg_slopes_round(const double *values, uint32_t count, double w)
-{
-    double gaps[CSG_SLOPES_NODES], largest = -INFINITY, excess = 0, sum = 0, squares = 0;
-    for (uint32_t i = 0; i < count; i++)
-        largest = values[i] > largest ? values[i] : largest;
-    for (uint32_t i = 0; i < count; i++) { /* in order: they are few */
-        double gap = largest - values[i];
-        uint32_t to = i;
-        for (; to > 0 && gaps[to - 1] > gap; to--)
-            gaps[to] = gaps[to - 1];
-        gaps[to] = gap;
-    }
-    for (uint32_t i = 1; i < count && w - gaps[i] > excess; i++) {
-        sum += gaps[i];
-        squares += gaps[i] * gaps[i];
-        double mean = sum / (i + 1), rest = w * w - (squares - sum * mean);
-        excess = w - mean - sqrt((rest > 0 ? rest : 0) / (i + 1));
-    }
-    return largest + (excess > 0 ? excess : 0);
-}
-
-static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
-{
-    double values[CSG_SLOPES_NODES];
-    values[0] = -INFINITY; /* set also where there are none */
-    for (uint32_t i = 0; i < count; i++)
-        values[i] = turn * csg_slopes_value(&of[i], what);
-    return turn * csg_slopes_round(values, count, w);
-}
-
-/* Of operands in the proportions of these weights. They are mixed one after the other, each with
- * the mixture of those before it. False: no bound is known. */
-static bool mix_round(const operand *of, const range *weights, uint32_t count, operand *sum)
-{
-    range total = {0, 0}; /* of the weights so far */
-    for (uint32_t i = 0; i < count; i++) {
-        range weight = weights[i];
-        if (weight.high <= 0)
-            continue;
-        range share = {total.low / (total.low + weight.high),
-                       total.high / (total.high + weight.low)};
-        if (!(total.high > 0))
-            *sum = of[i];
-        else if (!csg_slopes_mix(sum, &of[i], share, false))
-            return false;
-        total = (range){total.low + weight.low, total.high + weight.high};
-    }
-    return total.high > 0;
-}
-
-/* The same where the whole field is zero: there the weights' squares add up to w^2, and each is
- * what its operand is anyway, which in a thin wall says much more than how far operands part. */
-static void find_level(walker *w, const operand *of, const range *weights, uint32_t count,
-                       double turn, double size)
-{
-    range at_zero[CSG_SLOPES_NODES];
-    double doubt = 1e-5 * size, least = 0, most = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        double low = turn * (turn > 0 ? of[i].least : of[i].most) - of[i].doubt - doubt;
-        double high = turn * (turn > 0 ? of[i].most : of[i].least) + of[i].doubt + doubt;
-        at_zero[i] = (range){fmax(0, low + size), fmax(0, fmin(size + doubt, high + size))};
-        least += at_zero[i].low * at_zero[i].low;
-        most += at_zero[i].high * at_zero[i].high;
-    }
-    double square = size * size, slack = 4 * doubt * size;
-    for (uint32_t i = 0; i < count; i++) {
-        double low = at_zero[i].low, high = at_zero[i].high;
-        double above = square - slack - (most - high * high);
-        double below = square + slack - (least - low * low);
-        at_zero[i].low = fmax(fmax(low, sqrt(fmax(above, 0))), weights[i].low);
-        at_zero[i].high = fmin(fmin(high, sqrt(fmax(below, 0))), weights[i].high);
-        at_zero[i].high = fmax(at_zero[i].high, at_zero[i].low); /* nothing is zero, but rounding */
-    }
-    w->has_level = mix_round(of, at_zero, count, &w->level);
-}
-
-/* Shares are in the proportions of (f_i - F + w)_+. */
-static bool join_round(walker *w, const csg_tape_node *node)
-{
-    double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, change = 0;
-    operand *of = &w->stack[w->top - node->arity];
-    double value = round_value(of, CSG_SLOPES_MIDDLE, node->arity, turn, size);
-    double low = round_value(of, CSG_SLOPES_LOW, node->arity, turn, size);
-    double high = round_value(of, CSG_SLOPES_HIGH, node->arity, turn, size);
-    double least = round_value(of, CSG_SLOPES_LEAST, node->arity, turn, size);
-    double most = round_value(of, CSG_SLOPES_MOST, node->arity, turn, size);
-    for (uint32_t i = 0; i < node->arity; i++) {
-        doubt = fmax(doubt, of[i].doubt);
-        for (uint32_t k = i + 1; k < node->arity; k++)
-            change = fmax(change, change_of(w, &of[i], &of[k]));
-    }
-    double reach = change + 2 * doubt + 1e-5 * size;
-    range weights[CSG_SLOPES_NODES];
-    weights[0] = (range){0, 0}; /* set also where there are none */
-    for (uint32_t i = 0; i < node->arity; i++) {
-        double at = turn * (of[i].value - value) + size;
-        weights[i] = (range){fmax(0, at - reach), at + reach};
-    }
-    operand sum;
-    bool done = mix_round(of, weights, node->arity, &sum);
-    if (node == &w->tape->nodes[w->tape->count - 1])
-        find_level(w, of, weights, node->arity, turn, size);
-    w->top -= node->arity - 1;
-    if (!done)
-        return false;
-    of[0] = sum;
-    of[0].value = value;
-    of[0].doubt = doubt + 1e-5 * size;
-    of[0].low = low - of[0].doubt;
-    of[0].high = high + of[0].doubt;
-    of[0].least = least;
-    of[0].most = most;
-    return done;
-}
-
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -446,10 +325,11 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
     return value + turn * (most + 1e-5 * w->flat);
 }
 
-/* Of a leaf, at the corners and at c. */
-static const float *leaf_values(const walker *w, const csg_tape_node *leaf)
+/* Of a leaf at a corner, or at c behind them. */
+static double leaf_value(const walker *w, const csg_tape_node *leaf, uint32_t place)
 {
-    return w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
+    size_t at = (size_t)(leaf - w->tape->nodes) * w->stride;
+    return (double)w->values[at + (place < w->places ? place : w->places - 1)];
 }
 
 /* Over the triangle, from the values at its corners: no farther off than gradients stray from one
@@ -459,8 +339,7 @@ static void find_range(const walker *w, const csg_tape_node *node, operand *leaf
     const csg_cone_ball *balls = leaf->balls.items;
     double stray = 0;
     double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
-    const float *corners = leaf_values(w, node);
-    double a = (double)corners[0], b = (double)corners[1], c = (double)corners[2];
+    double a = leaf_value(w, node, 0), b = leaf_value(w, node, 1), c = leaf_value(w, node, 2);
     leaf->low = fmin(a, fmin(b, c)) - slack;
     leaf->high = fmax(a, fmax(b, c)) + slack;
     for (uint32_t i = 0; i < leaf->balls.count; i++)
@@ -527,7 +406,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node)
     const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     leaf->balls.count = 0;
     leaf->balls.has_edges = leaf->stretched = false;
-    leaf->value = (double)leaf_values(w, node)[CORNERS];
+    leaf->value = leaf_value(w, node, CORNERS);
     leaf->doubt =
         (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK] + 1e-6 * fabs(leaf->value);
     if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
@@ -560,7 +439,7 @@ static bool walk(walker *w)
         if (csg_op_is_leaf(node->op))
             known = push_leaf(w, node);
         else if (csg_op_is_round(node->op))
-            known = join_round(w, node);
+            known = csg_slopes_join_round(w, node);
         else if (csg_op_is_fillet(node->op))
             known = csg_slopes_join_fillet(w, node);
         else if (known && csg_blend_is_rule(node->blend))
@@ -633,6 +512,18 @@ static bool take_result(const walker *w, csg_gradients *out)
     return out->balls.count > 0;
 }
 
+/* Or are all of them around a place. */
+static bool have_triangles(const csg_gradients_region *regions, size_t count)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < CORNERS; k++) {
+            csg_vec3 v = regions[i].triangle[k], c = regions[i].c;
+            any |= v.x != c.x || v.y != c.y || v.z != c.z;
+        }
+    return any;
+}
+
 void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
                              const csg_gradients_region *regions, size_t count, float *scratch,
                              size_t scratch_floats, csg_gradients *const *out, bool *is_known)
@@ -649,18 +540,21 @@ void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
     w.tape = tape;
     w.scratch = scratch;
     w.scratch_floats = scratch_floats;
-    w.stride = (PLACES * count + CSG_OCTANTS - 1) / CSG_OCTANTS * CSG_OCTANTS;
-    for (size_t i = 0; i < w.stride; i++) { /* the last ones again, where vectors have more room */
-        size_t n = i < PLACES * count ? i : PLACES * count - 1;
-        const csg_gradients_region *r = &regions[n / PLACES];
-        csg_vec3 p = n % PLACES < CORNERS ? r->triangle[n % PLACES] : r->c;
+    w.places = have_triangles(regions, count) ? PLACES : 1;
+    size_t all = count * w.places;
+    x[0] = y[0] = z[0] = 0; /* set also where there are no regions */
+    w.stride = (all + CSG_OCTANTS - 1) / CSG_OCTANTS * CSG_OCTANTS;
+    for (size_t i = 0; i < w.stride; i++) { /* the last one again, where vectors have more room */
+        size_t n = i < all ? i : all - 1, k = n % w.places;
+        const csg_gradients_region *r = &regions[n / w.places];
+        csg_vec3 p = k + 1 < w.places ? r->triangle[k] : r->c;
         x[i] = (float)p.x;
         y[i] = (float)p.y;
         z[i] = (float)p.z;
     }
     kernel->leaves(tape, x, y, z, w.stride, values);
     for (size_t i = 0; i < count; i++) {
-        w.values = values + i * PLACES;
+        w.values = values + i * w.places;
         w.region = regions[i];
         w.flat = 0;
         w.top = 0;
