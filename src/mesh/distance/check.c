@@ -157,10 +157,10 @@ static verdict settle_by_cone(const proof *p, const settler *s, const piece *one
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
     if (g->low >= -least && g->high <= least)
         return SETTLED;
-    *asks = may_settle_by_steps(p, l, g->stray, longest);
+    *asks = may_settle_by_steps(p, l, g->across, longest);
     *steps = (csg_steps){.at = {one->at[0], one->at[1], one->at[2]},
                          .step = csg_vec3_scale(axis, p->error),
-                         .stray = g->stray * l->d.radius};
+                         .stray = g->across * l->d.radius};
     return OPEN;
 }
 

@@ -124,7 +124,8 @@ static bool add_mixture(csg_cone_balls *balls, const csg_cone_ball *a, const csg
 }
 
 /* A pair's mixtures lie between those of the least and of the largest share; where these are near
- * to each other one ball around both will do. */
+ * to each other one ball around both will do. Of a mixture in the middle the spread, too, differs
+ * from theirs by half of the shares' range at most. */
 static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b, range r)
 {
     static const double NARROW = 0.3;
@@ -132,7 +133,9 @@ static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_co
         return add_mixture(balls, a, b, r.low) && add_mixture(balls, a, b, r.high);
     if (!add_mixture(balls, a, b, 0.5 * (r.low + r.high)))
         return false;
-    balls->items[balls->count - 1].spread += 0.5 * (r.high - r.low) * apart(a, b);
+    const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
+    balls->items[balls->count - 1].spread +=
+        0.5 * (r.high - r.low) * (csg_norm3(d) + fabs(a->spread - b->spread));
     return true;
 }
 
@@ -308,10 +311,34 @@ static bool is_concave(const csg_tape_node *leaf)
     return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
 }
 
-/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
- * convex one, which is turned around, the least. */
-static double tangent_value(const walker *w, const csg_tape_node *node, double value, double turn)
+/* Of a leaf at a corner, or at c behind them. */
+static double leaf_value(const walker *w, const csg_tape_node *leaf, uint32_t place)
 {
+    size_t at = (size_t)(leaf - w->tape->nodes) * w->stride;
+    return (double)w->values[at + (place < w->places ? place : w->places - 1)];
+}
+
+/* Whether it is a gradient that the leaf has, as far as is known. On a face, to rounding, the
+ * kernel's points anywhere. */
+static bool is_one_of(const csg_cone_balls *balls, csg_vec3 g)
+{
+    static const double ROUNDING = 1e-3;
+    bool any = false;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        csg_vec3 off = {g.x - ball->at[0], g.y - ball->at[1], g.z - ball->at[2]};
+        any |= csg_vec3_norm(off) <= ball->spread + ROUNDING;
+    }
+    return any;
+}
+
+/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
+ * convex one, which is turned around, the least. Infinite where that is no tangent plane: so near
+ * to a face that rounding tells its direction, or with a corner on its other side. */
+static double tangent_value(const walker *w, const csg_tape_node *node, const operand *leaf,
+                            double turn)
+{
+    static const double FAR = 1e3; /* of the rounding of a value */
     csg_tape_node alone = *node;
     csg_tape tape = *w->tape;
     alone.join = CSG_JOIN_NONE;
@@ -319,17 +346,16 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
     tape.count = 1;
     const csg_gradients_region *r = &w->region;
     csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, r->c, w->scratch, w->scratch_floats);
-    double most = 0;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c)));
-    return value + turn * (most + 1e-5 * w->flat);
-}
-
-/* Of a leaf at a corner, or at c behind them. */
-static double leaf_value(const walker *w, const csg_tape_node *leaf, uint32_t place)
-{
-    size_t at = (size_t)(leaf - w->tape->nodes) * w->stride;
-    return (double)w->values[at + (place < w->places ? place : w->places - 1)];
+    double from_face = leaf->value - (double)w->tape->parameters[node->parameters + CSG_LEAF_RAISE];
+    double value = leaf->value + turn * leaf->doubt, most = 0, slack = 1e-5 * w->flat;
+    bool is_tangent = fabs(from_face) > FAR * leaf->doubt || is_one_of(&leaf->balls, slope);
+    for (uint32_t k = 0; k < CORNERS; k++) {
+        double along = csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c));
+        double beyond = turn * (leaf_value(w, node, k) - value - along);
+        is_tangent &= beyond <= 2 * leaf->doubt + slack;
+        most = fmax(most, turn * along);
+    }
+    return is_tangent ? value + turn * (most + slack) : turn * INFINITY;
 }
 
 /* Over the triangle, from the values at its corners: no farther off than gradients stray from one
@@ -355,7 +381,7 @@ static void find_range(const walker *w, const csg_tape_node *node, operand *leaf
     double beyond = concave ? leaf->high + stray * w->flat : leaf->low - stray * w->flat;
     if (leaf->balls.count > 1) {
         double turn = concave ? 1 : -1;
-        double tangent = tangent_value(w, node, leaf->value + turn * leaf->doubt, turn);
+        double tangent = tangent_value(w, node, leaf, turn);
         beyond = concave ? fmin(beyond, tangent) : fmax(beyond, tangent);
     }
     *(concave ? &leaf->high : &leaf->low) = beyond;
@@ -456,27 +482,35 @@ static bool exceeds_hull(const operand *root)
     return root->stretched || root->faces || root->balls.has_edges;
 }
 
-/* How far gradients are at most from the middle of the balls, which they are in the hull of. */
-static double find_stray(const operand *root, csg_gradients *out)
+/* The middle of the balls, whose hull they are in, or where combinations of these may be longer of
+ * a ball around those; and how far from it they are at most, along the triangle's plane alone too:
+ * of gradients that differ in length, as those of thin walls do, that is much less. */
+static void find_stray(const walker *w, const operand *root, csg_gradients *out)
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
-    double stray = INFINITY;
+    out->stray = out->across = INFINITY;
     if (balls->count && exceeds_hull(root)) {
         out->is_axis_known = true;
         out->has_axis = csg_cone_find_axis(balls, &out->cone);
         if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
-            stray = middle.spread;
+            out->stray = out->across = middle.spread;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
             for (int k = 0; k < 3; k++)
                 middle.at[k] += balls->items[i].at[k] / balls->count;
-        stray = 0;
-        for (uint32_t i = 0; i < balls->count; i++)
-            stray = fmax(stray, apart(&middle, &balls->items[i]));
+        out->stray = out->across = 0;
+        for (uint32_t i = 0; i < balls->count; i++) {
+            const csg_cone_ball *ball = &balls->items[i];
+            csg_vec3 off = {ball->at[0] - middle.at[0], ball->at[1] - middle.at[1],
+                            ball->at[2] - middle.at[2]};
+            double square = csg_vec3_dot(off, off), along = csg_vec3_dot(off, w->normal);
+            double across = square > along * along ? sqrt(square - along * along) : 0;
+            out->stray = fmax(out->stray, sqrt(square) + ball->spread);
+            out->across = fmax(out->across, across + ball->spread);
+        }
     }
     memcpy(out->middle, middle.at, sizeof middle.at);
-    return stray;
 }
 
 /* Of the balls' hull; where faces meet, combinations may be longer. */
@@ -504,12 +538,20 @@ static bool take_result(const walker *w, csg_gradients *out)
     out->least = root->least;
     out->most = root->most;
     out->is_axis_known = false;
-    out->stray = find_stray(root, out);
+    find_stray(w, root, out);
     out->doubt = root->doubt;
     out->has_level = w->has_level;
     if (w->has_level)
         out->level = w->level.balls;
     return out->balls.count > 0;
+}
+
+/* 0 where it is none. */
+static csg_vec3 normal_of(const csg_vec3 v[3])
+{
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+    double length = csg_vec3_norm(n);
+    return length > 0 ? csg_vec3_scale(n, 1 / length) : (csg_vec3){0, 0, 0};
 }
 
 /* Or are all of them around a place. */
@@ -561,6 +603,7 @@ void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
         w.has_level = false;
         for (int k = 0; k < CORNERS; k++)
             w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(w.region.triangle[k], w.region.c)));
+        w.normal = normal_of(w.region.triangle);
         w.radius = w.flat + w.region.around + sqrt(3.0) * w.region.half;
         is_known[i] = walk(&w) && take_result(&w, out[i]);
     }

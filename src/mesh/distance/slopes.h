@@ -38,8 +38,9 @@ typedef struct csg_gradients {
     double low, high;   /* over the triangle */
     double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
-    bool exceeds; /* they may be combinations of the balls with weights of more than 1 in all */
-    double stray; /* no gradient is farther from `middle`; INFINITY: not known */
+    bool exceeds;  /* they may be combinations of the balls with weights of more than 1 in all */
+    double stray;  /* no gradient is farther from `middle`; INFINITY: not known */
+    double across; /* the same, of their parts along the triangle */
     double middle[3];
     double doubt;                 /* rounding of the field's values */
     csg_cone cone;                /* the axis of `balls`, if it was looked for on the way */

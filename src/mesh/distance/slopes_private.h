@@ -22,6 +22,7 @@ typedef struct csg_slopes_walker {
     const csg_kernel *kernel;
     const csg_tape *tape;
     csg_gradients_region region;
+    csg_vec3 normal;     /* of the triangle */
     double radius, flat; /* of the ball around c that holds the region; the triangle */
     const float *values; /* of node number i from i times the stride on, at so many places */
     size_t stride;
