@@ -6,6 +6,7 @@
 
 #include "field/cones/cone.h"
 #include "mesh/distance/slopes.h"
+#include "mesh/distance/steps.h"
 #include "mesh/mesh_support.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/rule.h"
@@ -13,7 +14,7 @@
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"
 
-static uint32_t scene_count = 24, range_count = 0;
+static uint32_t scene_count = 24, range_count = 0, step_count = 0;
 
 enum { TRIES = 60 };
 
@@ -74,6 +75,9 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     csg_cone cone;
     csg_vec3 first = {0, 0, 0};
     bool has_axis = csg_cone_find_axis(&found->balls, &cone);
+    const csg_vec3 *v = region->triangle;
+    csg_vec3 normal =
+        csg_vec3_normalize(csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0])));
     for (int i = 0; i < TRIES; i++) {
         csg_vec3 d = place_in(region, random, 1);
         double value = test_sample(scene, csg_vec3_add(at, d)).value;
@@ -95,10 +99,47 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
         if (csg_vec3_norm(csg_vec3_sub(g, first)) > 2 * found->stray + 1e-3)
             fail_msg("slopes %g apart, not %g from one, near (%g, %g, %g) within %g",
                      csg_vec3_norm(csg_vec3_sub(g, first)), found->stray, at.x, at.y, at.z, radius);
+        csg_vec3 apart = csg_vec3_sub(g, first);
+        apart = csg_vec3_sub(apart, csg_vec3_scale(normal, csg_vec3_dot(normal, apart)));
+        if (csg_vec3_norm(apart) > 2 * found->across + 1e-3)
+            fail_msg("slopes %g apart along the plane, not %g from one, near (%g, %g, %g)",
+                     csg_vec3_norm(apart), found->across, at.x, at.y, at.z);
         if (has_axis && climb < cone.least - 1e-3)
             fail_msg("the field climbs by %g, not %g, near (%g, %g, %g) within %g", climb,
                      cone.least, at.x, at.y, at.z, radius);
     }
+}
+
+/* What mesh/distance/steps.h says of the region's triangle, tried at random points of it. Returns
+ * whether it was settled. */
+static bool try_steps(const csgm_scene *scene, const csgm_field *field, csg_random *random,
+                      const csg_gradients_region *region, const csg_gradients *found,
+                      float *scratch, size_t floats)
+{
+    csg_cone cone;
+    const csg_vec3 *v = region->triangle;
+    csg_vec3 c = csg_vec3_scale(csg_vec3_add(v[0], csg_vec3_add(v[1], v[2])), 1.0 / 3);
+    double radius = 0;
+    if (!csg_gradients_find_axis(found, &cone))
+        return false;
+    for (int k = 0; k < 3; k++)
+        radius = fmax(radius, csg_vec3_norm(csg_vec3_sub(v[k], c)));
+    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
+    csg_steps piece = {.at = {v[0], v[1], v[2]},
+                       .step = csg_vec3_scale(axis, region->around),
+                       .stray = found->across * radius};
+    csg_steps_settle(csg_kernel_for(CSGM_ISA_AUTO), &field->tape, 0, scratch, floats, &piece, 1);
+    for (int i = 0; !piece.fails && i < TRIES; i++) {
+        double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
+        csg_vec3 p = csg_vec3_add(csg_vec3_scale(v[0], s), csg_vec3_scale(v[1], t));
+        p = csg_vec3_add(csg_vec3_add(p, csg_vec3_scale(v[2], 1 - s - t)), field->center);
+        double inside = test_sample(scene, csg_vec3_add(p, piece.step)).value;
+        double outside = test_sample(scene, csg_vec3_sub(p, piece.step)).value;
+        if (inside < -1e-4 || outside > 1e-4)
+            fail_msg("%g a step inwards, %g a step back, at (%g, %g, %g)", inside, outside, p.x,
+                     p.y, p.z);
+    }
+    return !piece.fails;
 }
 
 /* And between two places of the region, on a line along that axis and on any other: gradients as
@@ -159,6 +200,7 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
     if (is_known) {
         check_gradients(scene, random, at, &region, &found);
         check_differences(scene, random, at, &region, &found);
+        step_count += try_steps(scene, field, random, &region, &found, scratch, floats);
     }
     free(scratch);
     return is_known;
@@ -213,6 +255,19 @@ static csg_blend any_blend(csg_random *random)
     return blends[(int)csg_random_uniform(random, 0, 4.999)];
 }
 
+/* By steps of Newton's method. */
+static csg_vec3 come_near(const csgm_scene *scene, csg_vec3 at)
+{
+    enum { STEPS = 4 };
+    for (int step = 0; step < STEPS; step++) {
+        csg_sample s = test_sample(scene, at);
+        double square = csg_vec3_dot(s.gradient, s.gradient);
+        if (square > 0.01)
+            at = csg_vec3_sub(at, csg_vec3_scale(s.gradient, s.value / square));
+    }
+    return at;
+}
+
 static void cones_hold(void **state)
 {
     (void)state;
@@ -239,11 +294,14 @@ static void cones_hold(void **state)
             double radius = exp(csg_random_uniform(&random, -5, -0.5));
             found += try_cone(c.scene, c.field, &random, at, radius);
             ranges += try_range(c.scene, c.field, &random, at, radius);
+            if (i % 2)
+                try_range(c.scene, c.field, &random, come_near(c.scene, at), 0.3 * radius);
         }
         mesh_case_end(&c);
     }
     assert_true(found > 3000);
     assert_true(ranges > 3000);
+    assert_true(step_count > 1000);
 }
 
 /* ---- other leaves ---------------------------------------------------------------------------- */

@@ -126,50 +126,6 @@ static int channels_of(plan wanted)
     return wanted.gradients + wanted.colors;
 }
 
-/* A term of a sum that must not depend on the order of its terms: a multiple of 2^-32 of the size,
- * which doubles add without rounding. */
-static inline double grain(double term, double size)
-{
-    const double large = 0x1.8p20 * size;
-    return (term + large) - large;
-}
-
-/* Where more than two operands are active, out of their weights. */
-static void total_of_many(const float *weights, size_t stride, uint32_t arity, float w,
-                          const float *active, float *total, size_t count)
-{
-    double sum[CSG_BATCH];
-    for (size_t i = 0; i < count; i++)
-        sum[i] = 0;
-    for (uint32_t k = 0; k < arity; k++)
-        for (size_t i = 0; i < count; i++)
-            sum[i] += grain((double)weights[k * stride + i], (double)w);
-    for (size_t i = 0; i < count; i++)
-        total[i] = active[i] > 2 ? (float)sum[i] : total[i];
-}
-
-/* The same of a channel. */
-static void mean_of_many(const float *shares, size_t stride, uint32_t arity, const float *in,
-                         size_t in_stride, float *mean, size_t count)
-{
-    double sum[CSG_BATCH];
-    for (size_t i = 0; i < count; i++)
-        sum[i] = 0;
-    for (uint32_t k = 0; k < arity; k++)
-        for (size_t i = 0; i < count; i++)
-            sum[i] += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
-    for (size_t i = 0; i < count; i++)
-        mean[i] = (float)sum[i];
-}
-
-static int is_any_above(const float *array, float most, size_t count)
-{
-    float found = 0;
-    for (size_t i = 0; i < count; i++)
-        found = array[i] > most ? 1.0f : found;
-    return found > 0;
-}
-
 static void combine_round_mixed(const csg_tape *tape, const csg_tape_node *node, kernel_slots s,
                                 uint32_t depth, size_t first, int channels, size_t count,
                                 float *work)
@@ -672,6 +628,17 @@ static void intervals(const csg_tape *tape, const float cx[CSG_OCTANTS],
     }
 }
 
+static void leaves(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *out)
+{
+    csg_points p = {x, y, z, count};
+    csg_warped_points warped;
+    csg_warped_points_begin(&warped);
+    for (uint32_t n = 0; n < tape->count; n++)
+        if (csg_op_is_leaf(tape->nodes[n].op))
+            CSG_THIS_LEAF_KERNEL.values(tape, &tape->nodes[n], p, out + count * n, &warped);
+}
+
 static void join_alone(const csg_tape *tape, const csg_tape_node *node, float *a, const float *b,
                        size_t count)
 {
@@ -691,6 +658,7 @@ const csg_kernel CSG_THIS_KERNEL = {
     .true_gradients = true_gradients,
     .colors = colors,
     .intervals = intervals,
+    .leaves = leaves,
     .warped = warped,
     .join = join_alone,
     .roots = CSG_THIS_ROOTS,

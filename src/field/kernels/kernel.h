@@ -63,6 +63,12 @@ typedef struct csg_kernel {
                       const float cy[CSG_OCTANTS], const float cz[CSG_OCTANTS], float radius,
                       const float *turns, float *low, float *high, float *scratch);
 
+    /* Values of the leaves alone, each joined with nothing: out[count * i + k] of node i at point
+     * k; what stands there of other nodes is left as it is. count: a multiple of CSG_OCTANTS, at
+     * most CSG_BATCH. */
+    void (*leaves)(const csg_tape *tape, const float *x, const float *y, const float *z,
+                   size_t count, float *out);
+
     /* Points through all warps from the outermost to number `warp`, as a leaf below has them;
      * count <= CSG_BATCH. */
     void (*warped)(const csg_tape *tape, uint32_t warp, float *x, float *y, float *z, size_t count);

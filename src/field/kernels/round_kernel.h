@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/select.h"
+#include "field/kernels/batch.h"
 
 /* G - max for the first m operands, from the sums of u_i = max - f_i and of u_i^2. Never below 0.
  */
@@ -93,6 +94,50 @@ static void round_solve(float *restrict f, size_t stride, uint32_t arity, int is
         if (reached == 0)
             break;
     }
+}
+
+/* A term of a sum that must not depend on the order of its terms: a multiple of 2^-32 of the size,
+ * which doubles add without rounding. */
+static inline double grain(double term, double size)
+{
+    const double large = 0x1.8p20 * size;
+    return (term + large) - large;
+}
+
+/* Where more than two operands are active, out of their weights. */
+static void total_of_many(const float *weights, size_t stride, uint32_t arity, float w,
+                          const float *active, float *total, size_t count)
+{
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)weights[k * stride + i], (double)w);
+    for (size_t i = 0; i < count; i++)
+        total[i] = active[i] > 2 ? (float)sum[i] : total[i];
+}
+
+/* The same of a channel. */
+static void mean_of_many(const float *shares, size_t stride, uint32_t arity, const float *in,
+                         size_t in_stride, float *mean, size_t count)
+{
+    double sum[CSG_BATCH];
+    for (size_t i = 0; i < count; i++)
+        sum[i] = 0;
+    for (uint32_t k = 0; k < arity; k++)
+        for (size_t i = 0; i < count; i++)
+            sum[i] += grain((double)(shares[k * stride + i] * in[k * in_stride + i]), 1);
+    for (size_t i = 0; i < count; i++)
+        mean[i] = (float)sum[i];
+}
+
+static int is_any_above(const float *array, float most, size_t count)
+{
+    float found = 0;
+    for (size_t i = 0; i < count; i++)
+        found = array[i] > most ? 1.0f : found;
+    return found > 0;
 }
 
 #endif

@@ -12,11 +12,9 @@
 #include "grid/octree/octree.h"
 #include "mesh/distance/effort.h"
 #include "mesh/distance/slopes.h"
+#include "mesh/distance/steps.h"
 
 enum { PIECES = 1 << 11, GROUPS = PIECES / CSG_OCTANTS, STACK = 64 };
-
-/* Small triangles that a piece is cut into, along a side. */
-enum { MOST_CUTS = 12, MOST_PLACES = (MOST_CUTS + 1) * (MOST_CUTS + 2) / 2 + CSG_LANES };
 
 /* Looked at before the proof is given up: all in all, by their effort, and of one piece that was
  * cut. */
@@ -34,6 +32,7 @@ typedef struct settler {
     csg_tape tape; /* of the piece at hand */
     float *scratch;
     uint64_t pieces, by_cone, effort;
+    uint64_t most; /* pieces, with those of the one at hand */
 } settler;
 
 /* What eight pieces took, with their parts. */
@@ -85,109 +84,6 @@ static double slack_of(const proof *p)
     return 4 * (double)p->remesh->probe.noise;
 }
 
-/* Places at which values are asked for, all at once. */
-typedef struct places {
-    float at[3][2 * MOST_PLACES];
-    size_t count, outside; /* those from here on are on the outer side */
-} places;
-
-/* The corners of cuts^2 small triangles that the piece is cut into, a step away from it. */
-static void add_corners(places *to, const csg_vec3 v[3], csg_vec3 step, int cuts)
-{
-    csg_vec3 first = csg_vec3_add(v[0], step), q;
-    for (int i = 0; i <= cuts; i++)
-        for (int k = 0; i + k <= cuts; k++) {
-            q = csg_vec3_add(csg_vec3_scale(csg_vec3_sub(v[1], v[0]), (double)i / cuts),
-                             csg_vec3_scale(csg_vec3_sub(v[2], v[0]), (double)k / cuts));
-            q = csg_vec3_add(first, q);
-            size_t n = to->count++;
-            to->at[0][n] = (float)q.x, to->at[1][n] = (float)q.y, to->at[2][n] = (float)q.z;
-        }
-}
-
-/* By how much f has the sign that it should have there, at least. */
-static double margin_at(const proof *p, settler *s, places *of)
-{
-    float f[2 * MOST_PLACES];
-    double least = INFINITY;
-    for (size_t n = of->count; n % CSG_LANES; n++) /* shapes are asked for copies once */
-        for (int axis = 0; axis < 3; axis++)
-            of->at[axis][n] = of->at[axis][0];
-    p->remesh->probe.marching->kernel->values(&s->tape, of->at[0], of->at[1], of->at[2], of->count,
-                                              f, s->scratch, p->scratch_floats);
-    for (size_t i = 0; i < of->count; i++) {
-        double inside = i < of->outside ? (double)f[i] : -(double)f[i];
-        if (!(inside == inside))
-            return -INFINITY; /* no value, no proof */
-        least = inside < least ? inside : least;
-    }
-    return least;
-}
-
-/* The same on both sides of the piece, a step inwards and a step back. Both are asked for at once
- * where they are few, since a walk over the tape costs the same for sixteen places as for six; else
- * the outer side only where the inner one has more than `hopeless`. */
-static double margin_of(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 step, int cuts,
-                        double hopeless)
-{
-    enum { FEW_CUTS = 2 };
-    places of = {.count = 0};
-    add_corners(&of, v, step, cuts);
-    of.outside = of.count;
-    csg_vec3 back = csg_vec3_scale(step, -1);
-    if (cuts <= FEW_CUTS) {
-        add_corners(&of, v, back, cuts);
-        return margin_at(p, s, &of);
-    }
-    double inside = margin_at(p, s, &of);
-    if (!(inside > hopeless))
-        return inside;
-    of.count = of.outside = 0;
-    add_corners(&of, v, back, cuts);
-    double outside = margin_at(p, s, &of);
-    return inside < outside ? inside : outside;
-}
-
-/* Whether all of the piece is inside a step along the axis, and outside a step back. Values lie
- * between those at the corners of a small triangle but for what gradients stray by from one vector.
- * As many triangles as it takes: gradients are found once, and values cost little. No gradient is
- * longer than `longest`: no place is farther from zero than that on both sides. *excess, where that
- * fails: by what factor gradients stray too much. */
-static bool settles_by_steps(const proof *p, settler *s, disc d, const csg_vec3 v[3], double stray,
-                             double longest, csg_vec3 axis, double *excess)
-{
-    csg_vec3 step = csg_vec3_scale(axis, p->error);
-    double slack = slack_of(p);
-    stray *= d.radius;
-    if (!(stray < MOST_CUTS * longest * p->error))
-        return false;
-    for (int cuts = 2; cuts <= MOST_CUTS;) {
-        double margin = margin_of(p, s, v, step, cuts, stray / MOST_CUTS + slack) - slack;
-        if (margin * cuts > stray)
-            return true;
-        if (!(margin * MOST_CUTS > stray)) {
-            *excess = margin > 0 ? stray / (margin * MOST_CUTS) : INFINITY;
-            return false;
-        }
-        int enough = (int)ceil(stray / margin);
-        cuts = enough > cuts ? enough : cuts + 1;
-    }
-    return false;
-}
-
-static bool settles_by_cone(const proof *p, settler *s, disc d, const csg_vec3 v[3],
-                            const csg_gradients *gradients, double *excess)
-{
-    csg_cone cone;
-    if (!csg_gradients_find_axis(gradients, &cone))
-        return false;
-    double least = cone.least * p->error - slack_of(p);
-    double longest = fmin(gradients->longest, (double)s->tape.lipschitz);
-    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
-    return (gradients->low >= -least && gradients->high <= least) ||
-           settles_by_steps(p, s, d, v, gradients->stray, longest, axis, excess);
-}
-
 /* Thin walls, sharp tips: a change of sign in any direction will do. */
 static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, csg_vec3 side)
 {
@@ -226,38 +122,118 @@ static bool settles_nearby(const proof *p, settler *s, disc d, csg_vec3 normal, 
 /* FAR: no surface is as near as it should be, whatever the piece is cut into. */
 typedef enum verdict { OPEN, SETTLED, FAR } verdict;
 
-static verdict settle(const proof *p, settler *s, const csg_vec3 v[3], csg_vec3 normal,
-                      double *excess)
+/* Of a piece. */
+typedef struct answer {
+    verdict what;
+    double excess; /* where it is open: by what factor gradients stray too much */
+} answer;
+
+/* What is looked at of it. */
+typedef struct look {
+    disc d;
+    csg_gradients gradients;
+    bool is_known; /* they are */
+} look;
+
+/* Gradients that stray so much more than a value can be need not be asked about: no gradient is
+ * longer than `longest`, and no place farther from zero than that on both sides. */
+static bool may_settle_by_steps(const proof *p, const look *l, double stray, double longest)
+{
+    return stray * l->d.radius < CSG_STEPS_MOST_CUTS * longest * p->error;
+}
+
+/* Whether all of it is inside a step along the axis that its gradients have in common, and outside
+ * a step back. *steps, if that is to be asked of values. */
+static verdict settle_by_cone(const proof *p, const settler *s, const piece *one, const look *l,
+                              csg_steps *steps, bool *asks)
+{
+    csg_cone cone;
+    const csg_gradients *g = &l->gradients;
+    *asks = false;
+    if (!l->is_known || !csg_gradients_find_axis(g, &cone))
+        return OPEN;
+    double least = cone.least * p->error - slack_of(p);
+    double longest = fmin(g->longest, (double)s->tape.lipschitz);
+    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
+    if (g->low >= -least && g->high <= least)
+        return SETTLED;
+    *asks = may_settle_by_steps(p, l, g->across, longest);
+    *steps = (csg_steps){.at = {one->at[0], one->at[1], one->at[2]},
+                         .step = csg_vec3_scale(axis, p->error),
+                         .stray = g->across * l->d.radius};
+    return OPEN;
+}
+
+/* Of what its gradients did not settle. */
+static verdict settle_otherwise(const proof *p, settler *s, const piece *one, const look *l)
 {
     static const double STEPS_REACH = 6; /* of the error */
-    disc d = disc_of(v);
-    double steepest = (double)s->tape.lipschitz, value;
-    const csg_gradients_region near = {{v[0], v[1], v[2]}, d.center, p->error, 0};
-    csg_gradients gradients;
-    bool known = csg_gradients_find(p->remesh->probe.marching->kernel, &s->tape, &near, s->scratch,
-                                    p->scratch_floats, &gradients);
-    double any;
-    *excess = INFINITY;
-    s->pieces++;
-    s->effort += csg_effort_of(&s->tape);
-    if (known && settles_by_cone(p, s, d, v, &gradients, excess)) {
-        s->by_cone++;
-        return SETTLED;
-    }
-    if (known && gradients.longest < steepest)
-        steepest = gradients.longest;
-    value = known ? gradients.value : value_at(p, s, d.center);
+    double steepest = (double)s->tape.lipschitz;
+    if (l->is_known && l->gradients.longest < steepest)
+        steepest = l->gradients.longest;
+    double value = l->is_known ? l->gradients.value : value_at(p, s, l->d.center);
     if (fabs(value) > p->farthest * steepest * p->error + slack_of(p))
         return FAR;
-    if (d.radius > STEPS_REACH * p->error)
+    if (l->d.radius > STEPS_REACH * p->error)
         return OPEN;
     /* any gradient is as near to zero as that */
-    csg_vec3 inward = csg_vec3_scale(normal, -1);
-    if ((!known || gradients.stray > 0.5 * steepest) &&
-        settles_by_steps(p, s, d, v, steepest, steepest, inward, &any))
+    csg_steps inward = {.at = {one->at[0], one->at[1], one->at[2]},
+                        .step = csg_vec3_scale(one->normal, -p->error),
+                        .stray = steepest * l->d.radius,
+                        .fails = true};
+    if ((!l->is_known || l->gradients.stray > 0.5 * steepest) &&
+        may_settle_by_steps(p, l, steepest, steepest))
+        csg_steps_settle(p->remesh->probe.marching->kernel, &s->tape, slack_of(p), s->scratch,
+                         p->scratch_floats, &inward, 1);
+    if (!inward.fails)
         return SETTLED;
-    csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(v[1], v[0]));
-    return d.radius <= 0.5 * p->error && settles_nearby(p, s, d, normal, side) ? SETTLED : OPEN;
+    csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(one->at[1], one->at[0]));
+    return l->d.radius <= 0.5 * p->error && settles_nearby(p, s, l->d, one->normal, side) ? SETTLED
+                                                                                          : OPEN;
+}
+
+/* Up to eight pieces for which the settler's tape holds. */
+static void settle(const proof *p, settler *s, const piece *const *pieces, answer *const *answers,
+                   size_t count)
+{
+    const csg_kernel *kernel = p->remesh->probe.marching->kernel;
+    look looks[CSG_OCTANTS]; /* not filled: gradients are large */
+    csg_gradients_region near[CSG_OCTANTS] = {0};
+    csg_gradients *found[CSG_OCTANTS] = {NULL};
+    bool is_known[CSG_OCTANTS];
+    csg_steps steps[CSG_OCTANTS];
+    answer *asking[CSG_OCTANTS];
+    size_t asked = 0;
+    for (size_t i = 0; i < count; i++) {
+        const csg_vec3 *at = pieces[i]->at;
+        looks[i].d = disc_of(at);
+        near[i] = (csg_gradients_region){{at[0], at[1], at[2]}, looks[i].d.center, p->error, 0};
+        found[i] = &looks[i].gradients;
+    }
+    csg_gradients_find_each(kernel, &s->tape, near, count, s->scratch, p->scratch_floats, found,
+                            is_known);
+    for (size_t i = 0; i < count; i++) {
+        bool asks;
+        looks[i].is_known = is_known[i];
+        answers[i]->excess = INFINITY;
+        answers[i]->what = settle_by_cone(p, s, pieces[i], &looks[i], &steps[asked], &asks);
+        if (asks)
+            asking[asked++] = answers[i];
+    }
+    if (asked)
+        csg_steps_settle(kernel, &s->tape, slack_of(p), s->scratch, p->scratch_floats, steps,
+                         asked);
+    for (size_t i = 0; i < asked; i++) {
+        asking[i]->what = steps[i].fails ? OPEN : SETTLED;
+        asking[i]->excess = steps[i].excess;
+    }
+    s->pieces += count;
+    s->effort += count * csg_effort_of(&s->tape);
+    for (size_t i = 0; i < count; i++) {
+        s->by_cone += answers[i]->what == SETTLED;
+        if (answers[i]->what == OPEN)
+            answers[i]->what = settle_otherwise(p, s, pieces[i], &looks[i]);
+    }
 }
 
 /* The two halves by the middle of the longest side; false: small enough to give up. */
@@ -282,52 +258,28 @@ static bool bisect(const csg_vec3 v[3], double least, csg_vec3 (*halves)[3])
     return true;
 }
 
-static const double LEAST_SIDE = 0.0625; /* of the error: shorter ones are not cut */
-
-/* Settles the halves of one that stays open as a whole. Depth first: the stack holds one half for
- * each time the piece was cut. */
-static bool settle_halves(const proof *p, settler *s, const piece *whole)
-{
-    csg_vec3 stack[STACK][3];
-    size_t top = 2;
-    uint64_t most = s->pieces + MOST_OF_ONE - 1; /* the whole was one */
-    if (!bisect(whole->at, LEAST_SIDE * p->error, stack))
-        return false;
-    while (top) {
-        csg_vec3 v[3];
-        memcpy(v, stack[--top], sizeof v);
-        double any;
-        verdict what = settle(p, s, v, whole->normal, &any);
-        if (what == SETTLED)
-            continue;
-        if (what == FAR || top + 2 > STACK || s->pieces > most ||
-            !bisect(v, LEAST_SIDE * p->error, &stack[top]))
-            return false;
-        top += 2;
-    }
-    return true;
-}
-
 /* ---- eight at a time ---------------------------------------------------------------------------
  */
 
 /* Pieces begin with sides of so many cells, or errors where cells are small. What has few leaves,
  * whose gradients say by themselves what does not take part, is cut without another tape. */
 enum { FIRST_SIDE = 8, FIRST_ERRORS = 64, DEEPEST = 8, FEW_NODES = 6 };
+static const double LEAST_SIDE = 0.0625; /* of the error: shorter ones are not cut */
 
-/* Eight parts of a piece, by three bisections, or fewer by fewer. */
-static void cut(const piece *whole, piece *parts, int count)
+/* Up to eight parts of a piece, by three bisections, or fewer by fewer. False: it is too small. */
+static bool cut(const piece *whole, double least, piece *parts, int count)
 {
     for (int i = 0; i < count; i++)
         parts[i] = *whole;
     for (int half = count / 2; half; half /= 2)
         for (int i = 0; i < count; i += 2 * half) {
             csg_vec3 halves[2][3];
-            if (!bisect(parts[i].at, 0, halves))
-                continue;
+            if (!bisect(parts[i].at, i ? 0 : least, halves) && !i)
+                return false;
             memcpy(parts[i].at, halves[0], sizeof halves[0]);
             memcpy(parts[i + half].at, halves[1], sizeof halves[1]);
         }
+    return true;
 }
 
 /* Gradients stray by less in a smaller piece, and values between corners by the square of that:
@@ -376,36 +328,64 @@ static bool has_open(const piece *pieces, size_t count, uint32_t triangle)
     return any;
 }
 
-/* Settles pieces; what is large and of several leaves is cut in up to eight, whose tapes are
- * shorter. A triangle with an open piece is mended, whatever its others are: all are looked at
- * before any of them is cut, and no more than it takes to find one that stays open. False: out of
- * memory. */
-static bool settle_eight(proof *p, settler *s, const csg_tape *from, piece *pieces, size_t count,
-                         int depth)
+/* Those of each tape at once: most have the same one. */
+static void settle_all(const proof *p, settler *s, const piece *pieces, const csg_tape *tapes,
+                       answer *answers, size_t count)
+{
+    bool is_done[CSG_OCTANTS] = {false};
+    for (size_t i = 0; i < count; i++) {
+        const piece *alike[CSG_OCTANTS];
+        answer *of[CSG_OCTANTS];
+        size_t alike_count = 0;
+        if (!tapes[i].count)
+            answers[i].what = FAR;
+        for (size_t k = i; k < count && tapes[i].count && !is_done[i]; k++) {
+            if (is_done[k] || !csg_tape_is_same(&tapes[i], &tapes[k]))
+                continue;
+            alike[alike_count] = &pieces[k];
+            of[alike_count++] = &answers[k];
+            is_done[k] = k > i;
+        }
+        s->tape = tapes[i];
+        if (alike_count)
+            settle(p, s, alike, of, alike_count);
+    }
+}
+
+/* Settles pieces; what stays open is cut in up to eight, whose tapes are shorter where it is large
+ * and of several leaves. A triangle with an open piece is mended, whatever its others are: all are
+ * looked at before any of them is cut, and no more than it takes to find one that stays open.
+ * `from` is short enough: for all of them. False: out of memory. */
+static bool settle_eight(proof *p, settler *s, const csg_tape *from, bool is_short, piece *pieces,
+                         size_t count, int depth)
 {
     csg_tape tapes[CSG_OCTANTS];
-    verdict what[CSG_OCTANTS];
-    double excess[CSG_OCTANTS];
+    answer answers[CSG_OCTANTS];
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
-    bool done = prune_eight(p, s, from, pieces, count, tapes);
-    for (size_t i = 0; done && i < count; i++) {
-        s->tape = tapes[i];
-        what[i] = tapes[i].count ? settle(p, s, pieces[i].at, pieces[i].normal, &excess[i]) : FAR;
-        pieces[i].open = what[i] == FAR;
-    }
+    bool done = true;
+    if (is_short)
+        for (size_t i = 0; i < count; i++)
+            tapes[i] = *from;
+    else
+        done = prune_eight(p, s, from, pieces, count, tapes);
+    if (done)
+        settle_all(p, s, pieces, tapes, answers, count);
+    for (size_t i = 0; done && i < count; i++)
+        pieces[i].open = answers[i].what == FAR;
     for (size_t i = 0; done && i < count; i++) {
         piece parts[CSG_OCTANTS];
-        if (what[i] != OPEN || has_open(pieces, count, pieces[i].triangle))
+        if (answers[i].what != OPEN || has_open(pieces, count, pieces[i].triangle))
             continue;
-        s->tape = tapes[i];
-        if (tapes[i].count <= FEW_NODES || depth == DEEPEST ||
-            disc_of(pieces[i].at).radius < 2 * p->error) {
-            pieces[i].open = !settle_halves(p, s, &pieces[i]);
+        bool is_last = tapes[i].count <= FEW_NODES || depth >= DEEPEST ||
+                       disc_of(pieces[i].at).radius < 2 * p->error;
+        if (is_last && !is_short)
+            s->most = s->pieces + MOST_OF_ONE;
+        int part_count = parts_for(answers[i].excess);
+        pieces[i].open = (is_last && s->pieces > s->most) ||
+                         !cut(&pieces[i], LEAST_SIDE * p->error, parts, part_count);
+        if (pieces[i].open)
             continue;
-        }
-        int part_count = parts_for(excess[i]);
-        cut(&pieces[i], parts, part_count);
-        done = settle_eight(p, s, &tapes[i], parts, (size_t)part_count, depth + 1);
+        done = settle_eight(p, s, &tapes[i], is_last, parts, (size_t)part_count, depth + 1);
         pieces[i].open = done && has_open(parts, (size_t)part_count, pieces[i].triangle);
     }
     csg_arena_release_to(&s->arena, mark);
@@ -419,8 +399,8 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
     const csg_tape *whole = &p->remesh->probe.marching->field->tape;
     settler *s = &p->settlers[worker];
     const group_work before = {s->pieces, s->by_cone, s->effort};
-    bool done =
-        settle_eight(p, s, whole, p->pieces + first, count < CSG_OCTANTS ? count : CSG_OCTANTS, 0);
+    bool done = settle_eight(p, s, whole, false, p->pieces + first,
+                             count < CSG_OCTANTS ? count : CSG_OCTANTS, 0);
     p->groups[group] = (group_work){s->pieces - before.pieces, s->by_cone - before.by_cone,
                                     s->effort - before.effort};
     if (done)

@@ -7,6 +7,8 @@
 #ifndef CSG_MESH_DISTANCE_EFFORT_H
 #define CSG_MESH_DISTANCE_EFFORT_H
 
+#include <string.h>
+
 #include "field/kernels/kernel.h"
 
 /* 1 of a short tape. A shape is searched anew for each place. */
@@ -17,6 +19,13 @@ static inline uint64_t csg_effort_of(const csg_tape *tape)
     for (uint32_t i = 0; i < tape->count; i++)
         nodes += tape->nodes[i].op == CSG_OP_SHAPE ? NODES_OF_SHAPE - 1 : 0;
     return (nodes + SHORT_NODES - 1) / SHORT_NODES;
+}
+
+/* Whether one walk over a tape does for both. */
+static inline bool csg_tape_is_same(const csg_tape *a, const csg_tape *b)
+{
+    return a->count == b->count &&
+           (a->nodes == b->nodes || !memcmp(a->nodes, b->nodes, a->count * sizeof *a->nodes));
 }
 
 #endif

@@ -10,8 +10,7 @@
 #include "field/point.h"
 #include "grid/octree/octree.h"
 #include "mesh/distance/effort.h"
-#include "mesh/distance/slopes.h"
-#include "mesh/plane.h"
+#include "mesh/distance/missed_cube.h"
 
 /* Cubes looked at, of one of the frontier: a share of all, then what it takes up to a limit. They
  * count by what they cost (effort.h). */
@@ -28,10 +27,6 @@ enum {
 /* Cubes of so many cells or less may be one sheet; their tapes hold so far around them. */
 static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
 static const double SHARE = 0.2; /* of what is left of the stage, for progress */
-/* How near a sheet's gradients must be to their middle, of the field's slope. A sheet that leans
- * farther is looked at in eight places; of one that leans less no place is farther from the mesh
- * than others by more than a twentieth. */
-static const double SMOOTH = 0.5, CREASED = 0.45, LEANING = 0.2, LEVEL = 0.95;
 
 /* What a frontier cube gave, and where it is. */
 typedef struct segment {
@@ -42,13 +37,17 @@ typedef struct segment {
     csg_vec3 place;
 } segment;
 
+typedef csg_missed_cube cube;
+typedef csg_missed_place place;
+
 typedef struct worker {
+    csg_missed_field field;
     csg_pruner pruner;
     csg_arena arena;
-    float *scratch;
     csg_missed_point *points;
     size_t count, capacity;
-    uint64_t cubes; /* in the frontier cube at hand, by their effort */
+    uint64_t cubes;   /* in the frontier cube at hand, by their effort */
+    size_t near_leaf; /* of the tree of triangles, where one was near */
     segment *segment;
 } worker;
 
@@ -65,159 +64,6 @@ typedef struct walk {
     size_t *again; /* those that were not finished; NULL = all of them */
     atomic_bool out_of_memory;
 } walk;
-
-/* A place of the surface, and the gradient there. */
-typedef struct place {
-    csg_vec3 at, slope;
-} place;
-
-/* A cube with the tape that holds in it and around it. */
-typedef struct cube {
-    csg_vec3 c;
-    double half, around, value; /* in the middle, where the cube is small enough for one sheet */
-    place surface;              /* in the cube or a little around, if there is one */
-    csg_tape tape;
-    double steepest, doubt; /* how fast the field changes at most along the axes, and its rounding
-                               there: in a cube that this one is a part of */
-    bool has_surface;
-    bool is_sheet; /* with those around it */
-    bool is_bent;  /* where it is one: it may have a crease, or a narrow fillet */
-} cube;
-
-/* ---- the field in a cube --------------------------------------------------------------------- */
-
-/* Values this small are zero. */
-static double noise_of(const walk *w)
-{
-    return 4 * (double)w->remesh->probe.noise;
-}
-
-enum { SEEDS = CSG_LANES };
-
-/* Places that go to the surface, and the field where they are. */
-typedef struct seeds {
-    csg_vec3 at[SEEDS], slope[SEEDS];
-    double value[SEEDS];
-    uint32_t count, moving[SEEDS], moving_count; /* those that are still on their way */
-} seeds;
-
-static void add_seed(seeds *to, csg_vec3 at)
-{
-    to->moving[to->moving_count++] = to->count;
-    to->at[to->count++] = at;
-}
-
-/* The field where those are that move. */
-static void ask(const walk *w, worker *s, const csg_tape *tape, seeds *of)
-{
-    float at[3][SEEDS] = {{0}}, f[SEEDS], g[3][SEEDS];
-    for (uint32_t k = 0; k < of->moving_count; k++) {
-        csg_vec3 p = of->at[of->moving[k]];
-        at[0][k] = (float)p.x, at[1][k] = (float)p.y, at[2][k] = (float)p.z;
-    }
-    w->remesh->probe.marching->kernel->values_and_gradients(tape, at[0], at[1], at[2],
-                                                            of->moving_count, f, g[0], g[1], g[2],
-                                                            s->scratch, w->scratch_floats);
-    for (uint32_t k = 0; k < of->moving_count; k++) {
-        of->value[of->moving[k]] = (double)f[k];
-        of->slope[of->moving[k]] = csg_vec3_make((double)g[0][k], (double)g[1][k], (double)g[2][k]);
-    }
-}
-
-/* Seeds that were asked for go to places of the surface that are no farther off along any axis than
- * `reach`, by Newton's steps; is_found: which do. All go at once: a walk over the tape for sixteen
- * places costs what it does for one. */
-static void find_surfaces(const walk *w, worker *s, const csg_tape *tape, double reach, seeds *of,
-                          bool is_found[SEEDS])
-{
-    enum { STEPS = 6 };
-    double noise = noise_of(w);
-    csg_vec3 begin[SEEDS];
-    memcpy(begin, of->at, of->count * sizeof *begin);
-    for (int step = 0;; step++) {
-        uint32_t left = 0;
-        for (uint32_t k = 0; k < of->moving_count; k++) {
-            uint32_t i = of->moving[k];
-            double square = csg_vec3_dot(of->slope[i], of->slope[i]);
-            is_found[i] = fabs(of->value[i]) <= noise;
-            if (is_found[i] || step == STEPS || !(square > 1e-6))
-                continue;
-            of->at[i] =
-                csg_vec3_sub(of->at[i], csg_vec3_scale(of->slope[i], of->value[i] / square));
-            csg_vec3 off = csg_vec3_sub(of->at[i], begin[i]);
-            if (fabs(off.x) <= reach && fabs(off.y) <= reach && fabs(off.z) <= reach)
-                of->moving[left++] = i;
-        }
-        of->moving_count = left;
-        if (!left)
-            return;
-        ask(w, s, tape, of);
-    }
-}
-
-/* How far around its middle a cube's places of the surface may lie. */
-static double reach_of(const cube *q)
-{
-    return q->half + 0.9 * q->around;
-}
-
-enum { RINGS = 4 }; /* around a place of the surface, each a quarter of that before it */
-
-/* What is not as deep has no room for a gap, or a wall. */
-static double least_depth(const walk *w)
-{
-    double last = 0.25 * w->error / (1 << 2 * (RINGS - 1));
-    return fmax(noise_of(w), last);
-}
-
-/* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
- * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
- * would be none. */
-static bool is_border(const walk *w, worker *s, const cube *q, const place *at_zero)
-{
-    enum { WAYS = 6, PLACES = 2 + RINGS * WAYS, PADDED = PLACES + CSG_LANES };
-    float at[3][PADDED] = {{0}}, f[PADDED] = {0};
-    csg_vec3 p = at_zero->at, uphill = csg_vec3_normalize(at_zero->slope);
-    double noise = noise_of(w), reach = 0.25 * w->error;
-    for (int i = 0; i < PLACES; i++) {
-        int ring = (i - 2) / WAYS, way = (i - 2) % WAYS / 2;
-        double step = (i % 2 ? reach : -reach) / (i < 2 ? 1 : 1 << 2 * ring);
-        csg_vec3 off = {way == 0 ? step : 0, way == 1 ? step : 0, way == 2 ? step : 0};
-        csg_vec3 to = csg_vec3_add(p, i < 2 ? csg_vec3_scale(uphill, step) : off);
-        at[0][i] = (float)to.x, at[1][i] = (float)to.y, at[2][i] = (float)to.z;
-    }
-    w->remesh->probe.marching->kernel->values(&q->tape, at[0], at[1], at[2], PLACES, f, s->scratch,
-                                              w->scratch_floats);
-    bool inside = false, outside = false;
-    for (int i = 0; i < PLACES; i++) {
-        inside |= (double)f[i] > noise;
-        outside |= (double)f[i] < -noise;
-    }
-    return inside && outside;
-}
-
-/* Whether the field is too far from zero in the middle to be it anywhere in the cube. */
-static bool is_far_from_zero(const walk *w, const cube *q)
-{
-    return fabs(q->value) > q->steepest * q->half + q->doubt + noise_of(w);
-}
-
-/* How near all gradients are at least to one direction where the field is zero, of the steepest
- * there. */
-static double leaning_of(const csg_gradients *gradients)
-{
-    double steepest = 0;
-    csg_cone cone;
-    bool has_level = gradients->has_level;
-    const csg_cone_balls *balls = has_level ? &gradients->level : &gradients->balls;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const double *g = balls->items[i].at;
-        steepest = fmax(steepest, csg_vec3_norm(csg_vec3_make(g[0], g[1], g[2])));
-    }
-    bool has_axis =
-        has_level ? csg_cone_find_axis(balls, &cone) : csg_gradients_find_axis(gradients, &cone);
-    return has_axis ? cone.least / steepest : 0;
-}
 
 /* ---- the walk -------------------------------------------------------------------------------- */
 
@@ -247,11 +93,16 @@ static bool may_be_sheet(const walk *w, double half)
     return 2 * half <= SHEET_CELLS * w->remesh->cell * 1.01;
 }
 
+static bool is_place_near(const walk *w, worker *s, csg_vec3 at, double most)
+{
+    return csg_triangle_tree_is_near(&w->remesh->tree, at, most, &s->near_leaf);
+}
+
 /* All of the cube. */
-static bool is_near_mesh(const walk *w, const cube *q)
+static bool is_near_mesh(const walk *w, worker *s, const cube *q)
 {
     double most = 0.9 * w->error - sqrt(3.0) * q->half;
-    return most > 0 && csg_triangle_tree_is_near(&w->remesh->tree, q->c, most);
+    return most > 0 && is_place_near(w, s, q->c, most);
 }
 
 /* As far as it matters. Most are near: to look there first costs little. */
@@ -264,116 +115,12 @@ static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
     return fmin(distance, far);
 }
 
-static bool is_surface_near(const walk *w, const cube *q)
+static bool is_surface_near(const walk *w, worker *s, cube *q)
 {
-    return q->has_surface && csg_triangle_tree_is_near(&w->remesh->tree, q->surface.at, w->error);
-}
-
-/* ---- where a sheet turns -----------------------------------------------------------------------
- * A mesh that cuts off a crease can be within the error of both faces, so near to every place of
- * these that is looked at, and still be farther from the crease.
- */
-
-/* Of a unit gradient, so that planes of different steepness compare. */
-static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, csg_plane *out)
-{
-    double norm = csg_vec3_norm(gradient);
-    if (!(norm > 1e-3))
-        return false;
-    *out = csg_plane_of(at, value / norm, csg_vec3_scale(gradient, 1 / norm));
-    return true;
-}
-
-/* Planes of the two faces that turn most from each other, as the cube's corners and its middle
- * show them. */
-static bool find_faces(const walk *w, worker *s, const cube *q, csg_plane faces[2])
-{
-    enum { PLACES = CSG_OCTANTS + 1, PADDED = CSG_OCTANTS + CSG_LANES };
-    float at[3][PADDED] = {{0}}, g[3][PADDED], f[PADDED];
-    csg_plane planes[PLACES] = {{{0, 0, 0}, 0}};
-    uint32_t count = 0;
-    double least = 1;
-    for (int i = 0; i < PLACES; i++) {
-        double step = i < CSG_OCTANTS ? q->half : 0;
-        at[0][i] = (float)(q->c.x + (i & 1 ? step : -step));
-        at[1][i] = (float)(q->c.y + (i & 2 ? step : -step));
-        at[2][i] = (float)(q->c.z + (i & 4 ? step : -step));
-    }
-    w->remesh->probe.marching->kernel->values_and_gradients(
-        &q->tape, at[0], at[1], at[2], PLACES, f, g[0], g[1], g[2], s->scratch, w->scratch_floats);
-    for (int i = 0; i < PLACES; i++) {
-        csg_vec3 p = {(double)at[0][i], (double)at[1][i], (double)at[2][i]};
-        csg_vec3 slope = {(double)g[0][i], (double)g[1][i], (double)g[2][i]};
-        count += find_plane(p, (double)f[i], slope, &planes[count]);
-    }
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t k = 0; k < i; k++) {
-            double cosine = csg_vec3_dot(planes[i].g, planes[k].g);
-            if (cosine >= least)
-                continue;
-            least = cosine;
-            faces[0] = planes[i];
-            faces[1] = planes[k];
-        }
-    return least < LEVEL;
-}
-
-enum { TURNS = 5 };
-
-/* Places where a sheet turns within the cube: along the line in which tangent planes of both faces
- * meet, from there to the surface. */
-static uint32_t find_turns(const walk *w, worker *s, const cube *q, place out[TURNS])
-{
-    static const double LEAST_SQUARE = 0.05; /* of the sine */
-    csg_plane faces[2] = {{{0, 0, 0}, 0}};
-    csg_vec3 middle = q->c;
-    seeds from = {.count = 0};
-    bool is_found[SEEDS];
-    uint32_t count = 0;
-    if (!find_faces(w, s, q, faces) || !csg_planes_meet_in_line(faces, LEAST_SQUARE, &middle))
-        return 0;
-    csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].g, faces[1].g));
-    for (int i = 0; i < TURNS; i++) {
-        double step = (2.0 * i / (TURNS - 1) - 1) * q->half;
-        csg_vec3 at = csg_vec3_add(middle, csg_vec3_scale(along, step));
-        csg_vec3 off = csg_vec3_sub(at, q->c);
-        if (fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= reach_of(q))
-            add_seed(&from, at); /* else it is another cube's */
-    }
-    if (!from.count)
-        return 0;
-    ask(w, s, &q->tape, &from);
-    find_surfaces(w, s, &q->tape, reach_of(q), &from, is_found);
-    for (uint32_t i = 0; i < from.count; i++)
-        if (is_found[i])
-            out[count++] = (place){from.at[i], from.slope[i]};
-    return count;
-}
-
-static bool has_several_balls(const csg_gradients *gradients)
-{
-    return (gradients->has_level ? gradients->level.count : gradients->balls.count) > 1;
-}
-
-typedef enum content { NOTHING, SHEET, ANYTHING } content;
-
-/* What the field's gradients say that there is in the cube. */
-static content content_of(const walk *w, worker *s, cube *q)
-{
-    const csg_gradients_region all = {{q->c, q->c, q->c}, q->c, 0, q->half};
-    csg_gradients gradients;
-    if (!csg_gradients_find(w->remesh->probe.marching->kernel, &q->tape, &all, s->scratch,
-                            w->scratch_floats, &gradients))
-        return ANYTHING;
-    q->steepest = fmin(q->steepest, csg_gradients_steepest(&gradients));
-    q->doubt = fmax(q->doubt, gradients.doubt);
-    if (is_far_from_zero(w, q) || gradients.least > -least_depth(w) ||
-        gradients.most < least_depth(w))
-        return NOTHING; /* or a face that solids share */
-    double leaning = leaning_of(&gradients);
-    q->is_sheet = leaning >= LEANING;
-    q->is_bent = leaning < LEVEL;
-    return leaning >= (has_several_balls(&gradients) ? CREASED : SMOOTH) ? SHEET : ANYTHING;
+    if (!q->is_asked)
+        q->is_near = q->has_surface && is_place_near(w, s, q->surface.at, w->error);
+    q->is_asked = true;
+    return q->is_near;
 }
 
 /* A sheet that has a place near the mesh. Where it turns at some distance from the mesh it is
@@ -381,12 +128,12 @@ static content content_of(const walk *w, worker *s, cube *q)
 static verdict settle_turns(const walk *w, worker *s, const cube *q)
 {
     static const double CLOSE = 0.5; /* of the error */
-    place places[TURNS];
-    uint32_t triangle, count = q->is_bent ? find_turns(w, s, q, places) : 0;
+    place places[CSG_MISSED_TURNS];
+    uint32_t triangle, count = q->is_bent ? csg_missed_find_turns(&s->field, q, places) : 0;
     for (uint32_t i = 0; i < count; i++) {
         csg_vec3 p = places[i].at;
-        if (csg_triangle_tree_is_near(&w->remesh->tree, p, CLOSE * w->error) ||
-            !is_border(w, s, q, &places[i]))
+        if (is_place_near(w, s, p, CLOSE * w->error) ||
+            !csg_missed_is_border(&s->field, q, &places[i]))
             continue;
         if (q->half > w->error)
             return DIVIDE;
@@ -397,11 +144,58 @@ static verdict settle_turns(const walk *w, worker *s, const cube *q)
     return SETTLED;
 }
 
-/* Whether its value in the middle is too large for a surface to be in it. */
-static bool is_empty(const walk *w, const cube *q)
+/* Of those children whose gradients settle() asks about, if there is no other way; most have one
+ * tape. */
+static void find_contents_of_children(const walk *w, worker *s, cube *children, uint32_t count)
 {
-    return fabs(q->value) > w->lipschitz * sqrt(3.0) * q->half + noise_of(w) ||
-           is_far_from_zero(w, q);
+    bool asks[CSG_OCTANTS] = {false};
+    for (uint32_t i = 0; i < count; i++) {
+        cube *q = &children[i];
+        q->what = CSG_MISSED_UNKNOWN;
+        q->ends = false;
+        if (csg_missed_is_empty(&s->field, q) || (q->is_sheet && is_surface_near(w, s, q)))
+            continue;
+        q->ends = q->half <= w->least || is_near_mesh(w, s, q);
+        asks[i] = !q->ends;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        cube *alike[CSG_OCTANTS];
+        uint32_t alike_count = 0;
+        for (uint32_t k = i; k < count && asks[i]; k++)
+            if (asks[k] && csg_tape_is_same(&children[i].tape, &children[k].tape)) {
+                alike[alike_count++] = &children[k];
+                asks[k] = k == i;
+            }
+        if (alike_count)
+            csg_missed_find_contents(&s->field, alike, alike_count);
+    }
+}
+
+/* A sheet that leans too far for one place to speak for it: each eighth of it that the surface goes
+ * through has one near the mesh. */
+static bool is_sheet_near(const walk *w, worker *s, const cube *q)
+{
+    cube part = *q;
+    cube parts[CSG_OCTANTS];
+    float c[3][CSG_OCTANTS];
+    part.half = 0.5 * q->half;
+    part.around = fmin(q->around, part.half);
+    csg_missed_place_children(q, c);
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        parts[o] = part;
+        parts[o].c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
+    }
+    csg_missed_find_surfaces(&s->field, q, parts, CSG_OCTANTS);
+    bool any = false;
+    for (int o = 0; o < CSG_OCTANTS; o++) {
+        if (csg_missed_is_empty(&s->field, &parts[o]) ||
+            (!parts[o].has_surface && csg_missed_leads_out(&parts[o])))
+            continue;
+        if (!is_surface_near(w, s, &parts[o]))
+            return false;
+        any = true;
+    }
+    return any;
 }
 
 /* A place of the surface at hand, how far from the mesh it is. */
@@ -411,33 +205,20 @@ static verdict settle(const walk *w, worker *s, cube *q)
     csg_vec3 p = q->surface.at;
     if (!may_be_sheet(w, q->half))
         return DIVIDE;
-    if (is_empty(w, q))
+    if (csg_missed_is_empty(&s->field, q) || q->what == CSG_MISSED_NOTHING)
         return SETTLED;
-    if (q->is_sheet && is_surface_near(w, q))
+    if (q->what == CSG_MISSED_ANYTHING)
+        return q->is_sheet && is_sheet_near(w, s, q) ? settle_turns(w, s, q) : DIVIDE;
+    if (q->what == CSG_MISSED_UNKNOWN && q->is_sheet && is_surface_near(w, s, q))
         return settle_turns(w, s, q);
-    bool ends = q->half <= w->least || is_near_mesh(w, q), sheet = false;
-    if (!ends) {
-        content what = content_of(w, s, q);
-        if (what != SHEET)
-            return what == NOTHING ? SETTLED : DIVIDE;
-        sheet = true;
-    }
     if (!q->has_surface)
-        return ends ? SETTLED : DIVIDE;
-    if (sheet && is_surface_near(w, q))
+        return q->ends ? SETTLED : DIVIDE;
+    if (q->what == CSG_MISSED_SHEET && is_surface_near(w, s, q))
         return settle_turns(w, s, q);
-    if (!is_border(w, s, q, &q->surface))
-        return ends ? SETTLED : DIVIDE;
+    if (!csg_missed_is_border(&s->field, q, &q->surface))
+        return q->ends ? SETTLED : DIVIDE;
     double distance = distance_from_mesh(w, p, &triangle);
     return keep(w, s, p, distance, triangle) ? SETTLED : NO_MEMORY;
-}
-
-static void place_children(const cube *parent, float c[3][CSG_OCTANTS])
-{
-    const double at[3] = {parent->c.x, parent->c.y, parent->c.z};
-    for (int axis = 0; axis < 3; axis++)
-        for (int o = 0; o < CSG_OCTANTS; o++)
-            c[axis][o] = (float)(at[axis] + (o >> axis & 1 ? 0.5 : -0.5) * parent->half);
 }
 
 /* The children that a surface may go through, with their tapes. False: out of memory. */
@@ -448,7 +229,7 @@ static bool make_children(const walk *w, worker *s, const cube *parent, cube *ch
     cube child = *parent; /* what is known of all of it holds in its parts */
     child.half = 0.5 * parent->half;
     child.around = fmin(parent->around, child.half);
-    place_children(parent, c);
+    csg_missed_place_children(parent, c);
     double reach = (child.half + child.around) * sqrt(3.0) * (1 + 1e-6);
     if (!csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], (float)reach))
         return false;
@@ -463,29 +244,6 @@ static bool make_children(const walk *w, worker *s, const cube *parent, cube *ch
     return true;
 }
 
-/* The field in the middle of each child, and a place of the surface in it, by the tape that holds
- * in all of them. */
-static void find_surfaces_of_children(const walk *w, worker *s, const cube *parent, cube *children,
-                                      uint32_t count)
-{
-    seeds from = {.count = 0};
-    bool is_found[SEEDS] = {false};
-    for (uint32_t i = 0; i < count; i++)
-        add_seed(&from, children[i].c);
-    ask(w, s, &parent->tape, &from);
-    from.moving_count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        children[i].value = from.value[i];
-        if (!is_empty(w, &children[i]))
-            from.moving[from.moving_count++] = i;
-    }
-    find_surfaces(w, s, &parent->tape, reach_of(&children[0]), &from, is_found);
-    for (uint32_t i = 0; i < count; i++) {
-        children[i].has_surface = is_found[i];
-        children[i].surface = (place){from.at[i], from.slope[i]};
-    }
-}
-
 /* Cubes are halved from 16 cells to a fraction of the error: the depth is bounded. */
 static bool divide(const walk *w, worker *s, const cube *parent, int depth)
 {
@@ -494,8 +252,10 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
     uint32_t count = 0;
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
     bool done = make_children(w, s, parent, children, &count);
-    if (done && count && may_be_sheet(w, children[0].half))
-        find_surfaces_of_children(w, s, parent, children, count);
+    if (done && count && may_be_sheet(w, children[0].half)) {
+        csg_missed_find_surfaces(&s->field, parent, children, count);
+        find_contents_of_children(w, s, children, count);
+    }
     for (uint32_t i = 0; i < count && done; i++) {
         s->cubes += csg_effort_of(&children[i].tape);
         if (s->cubes > w->most_cubes || depth == DEEPEST) {
@@ -554,8 +314,13 @@ static bool begin(walk *w)
         csg_pruner_init(&s->pruner, r->memory, r->marching->kernel,
                         csg_octree_rounding(r->marching->lattice));
         csg_arena_init(&s->arena, r->memory);
-        s->scratch = csg_memory_alloc(r->memory, w->scratch_floats * sizeof(float));
-        done = done && s->scratch;
+        s->field = (csg_missed_field){
+            .remesh = r,
+            .error = w->error,
+            .lipschitz = w->lipschitz,
+            .scratch = csg_memory_alloc(r->memory, w->scratch_floats * sizeof(float)),
+            .scratch_floats = w->scratch_floats};
+        done = done && s->field.scratch;
     }
     return done;
 }
@@ -567,7 +332,7 @@ static void end(walk *w)
         worker *s = &w->workers[i];
         csg_pruner_release(&s->pruner);
         csg_arena_reset(&s->arena);
-        csg_memory_release(memory, s->scratch, w->scratch_floats * sizeof(float));
+        csg_memory_release(memory, s->field.scratch, w->scratch_floats * sizeof(float));
         csg_memory_release(memory, s->points, s->capacity * sizeof *s->points);
     }
     csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);

@@ -17,6 +17,8 @@ typedef csg_slopes_walker walker;
 typedef csg_slopes_range range;
 typedef csg_slopes_which which;
 
+enum { CORNERS = 3 /* of a triangle */ };
+
 /* ---- differences and shares --------------------------------------------------------------------
  */
 
@@ -40,10 +42,7 @@ static double span_of(const walker *w, const double at[3], double spread)
            spread * w->radius;
 }
 
-/* By how much the difference of two operands can change. Between faces' normals a unit vector is at
- * most 1 / cos(phi / 4) as far from any other as one of these, where they are phi apart: at most
- * sqrt(2), for a disc without thickness. */
-static double change_of(const walker *w, const operand *a, const operand *b)
+double csg_slopes_change(const walker *w, const operand *a, const operand *b)
 {
     double most = 0;
     bool faces = a->faces || b->faces;
@@ -62,7 +61,7 @@ static double change_of(const walker *w, const operand *a, const operand *b)
 /* By how much it can change from c, within the region. */
 double csg_slopes_reach(const walker *w, const operand *a, const operand *b)
 {
-    return change_of(w, a, b) + a->doubt + b->doubt;
+    return csg_slopes_change(w, a, b) + a->doubt + b->doubt;
 }
 
 /* What a blend adds to the larger operand, and its slope, where the operands differ by d. */
@@ -125,7 +124,8 @@ static bool add_mixture(csg_cone_balls *balls, const csg_cone_ball *a, const csg
 }
 
 /* A pair's mixtures lie between those of the least and of the largest share; where these are near
- * to each other one ball around both will do. */
+ * to each other one ball around both will do. Of a mixture in the middle the spread, too, differs
+ * from theirs by half of the shares' range at most. */
 static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_cone_ball *b, range r)
 {
     static const double NARROW = 0.3;
@@ -133,7 +133,9 @@ static bool mix_pair(csg_cone_balls *balls, const csg_cone_ball *a, const csg_co
         return add_mixture(balls, a, b, r.low) && add_mixture(balls, a, b, r.high);
     if (!add_mixture(balls, a, b, 0.5 * (r.low + r.high)))
         return false;
-    balls->items[balls->count - 1].spread += 0.5 * (r.high - r.low) * apart(a, b);
+    const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
+    balls->items[balls->count - 1].spread +=
+        0.5 * (r.high - r.low) * (csg_norm3(d) + fabs(a->spread - b->spread));
     return true;
 }
 
@@ -299,122 +301,6 @@ double csg_slopes_value(const operand *o, which w)
     return NAN;
 }
 
-/* By Newton's steps on sum (f_i - F + w)_+^2 = w^2 (operators.md 12), from its largest operand:
- * convex and falling there, so they rise to the root. */
-double csg_slopes_round(const double *values, uint32_t count, double w)
-{
-    enum { STEPS = 40 };
-    double f = -INFINITY;
-    for (uint32_t i = 0; i < count; i++)
-        f = fmax(f, values[i]);
-    for (int step = 0; step < STEPS; step++) {
-        double squares = -w * w, slope = 0;
-        for (uint32_t i = 0; i < count; i++) {
-            double u = values[i] - f + w;
-            u = u > 0 ? u : 0; /* fmax is a call */
-            squares += u * u;
-            slope += 2 * u;
-        }
-        if (!(squares > 1e-14 * w * w) || !(slope > 0))
-            break;
-        f += squares / slope;
-    }
-    return f;
-}
-
-static double round_value(const operand *of, which what, uint32_t count, double turn, double w)
-{
-    double values[CSG_SLOPES_NODES];
-    for (uint32_t i = 0; i < count; i++)
-        values[i] = turn * csg_slopes_value(&of[i], what);
-    return turn * csg_slopes_round(values, count, w);
-}
-
-/* Of operands in the proportions of these weights. They are mixed one after the other, each with
- * the mixture of those before it. False: no bound is known. */
-static bool mix_round(const operand *of, const range *weights, uint32_t count, operand *sum)
-{
-    range total = {0, 0}; /* of the weights so far */
-    for (uint32_t i = 0; i < count; i++) {
-        range weight = weights[i];
-        if (weight.high <= 0)
-            continue;
-        range share = {total.low / (total.low + weight.high),
-                       total.high / (total.high + weight.low)};
-        if (!(total.high > 0))
-            *sum = of[i];
-        else if (!csg_slopes_mix(sum, &of[i], share, false))
-            return false;
-        total = (range){total.low + weight.low, total.high + weight.high};
-    }
-    return total.high > 0;
-}
-
-/* The same where the whole field is zero: there the weights' squares add up to w^2, and each is
- * what its operand is anyway, which in a thin wall says much more than how far operands part. */
-static void find_level(walker *w, const operand *of, const range *weights, uint32_t count,
-                       double turn, double size)
-{
-    range at_zero[CSG_SLOPES_NODES];
-    double doubt = 1e-5 * size, least = 0, most = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        double low = turn * (turn > 0 ? of[i].least : of[i].most) - of[i].doubt - doubt;
-        double high = turn * (turn > 0 ? of[i].most : of[i].least) + of[i].doubt + doubt;
-        at_zero[i] = (range){fmax(0, low + size), fmax(0, fmin(size + doubt, high + size))};
-        least += at_zero[i].low * at_zero[i].low;
-        most += at_zero[i].high * at_zero[i].high;
-    }
-    double square = size * size, slack = 4 * doubt * size;
-    for (uint32_t i = 0; i < count; i++) {
-        double low = at_zero[i].low, high = at_zero[i].high;
-        double above = square - slack - (most - high * high);
-        double below = square + slack - (least - low * low);
-        at_zero[i].low = fmax(fmax(low, sqrt(fmax(above, 0))), weights[i].low);
-        at_zero[i].high = fmin(fmin(high, sqrt(fmax(below, 0))), weights[i].high);
-        at_zero[i].high = fmax(at_zero[i].high, at_zero[i].low); /* nothing is zero, but rounding */
-    }
-    w->has_level = mix_round(of, at_zero, count, &w->level);
-}
-
-/* Shares are in the proportions of (f_i - F + w)_+. */
-static bool join_round(walker *w, const csg_tape_node *node)
-{
-    double size = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, doubt = 0, change = 0;
-    operand *of = &w->stack[w->top - node->arity];
-    double value = round_value(of, CSG_SLOPES_MIDDLE, node->arity, turn, size);
-    double low = round_value(of, CSG_SLOPES_LOW, node->arity, turn, size);
-    double high = round_value(of, CSG_SLOPES_HIGH, node->arity, turn, size);
-    double least = round_value(of, CSG_SLOPES_LEAST, node->arity, turn, size);
-    double most = round_value(of, CSG_SLOPES_MOST, node->arity, turn, size);
-    for (uint32_t i = 0; i < node->arity; i++) {
-        doubt = fmax(doubt, of[i].doubt);
-        for (uint32_t k = i + 1; k < node->arity; k++)
-            change = fmax(change, change_of(w, &of[i], &of[k]));
-    }
-    double reach = change + 2 * doubt + 1e-5 * size;
-    range weights[CSG_SLOPES_NODES];
-    for (uint32_t i = 0; i < node->arity; i++) {
-        double at = turn * (of[i].value - value) + size;
-        weights[i] = (range){fmax(0, at - reach), at + reach};
-    }
-    operand sum;
-    bool done = mix_round(of, weights, node->arity, &sum);
-    if (node == &w->tape->nodes[w->tape->count - 1])
-        find_level(w, of, weights, node->arity, turn, size);
-    w->top -= node->arity - 1;
-    if (!done)
-        return false;
-    of[0] = sum;
-    of[0].value = value;
-    of[0].doubt = doubt + 1e-5 * size;
-    of[0].low = low - of[0].doubt;
-    of[0].high = high + of[0].doubt;
-    of[0].least = least;
-    of[0].most = most;
-    return done;
-}
-
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -425,10 +311,34 @@ static bool is_concave(const csg_tape_node *leaf)
     return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
 }
 
-/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
- * convex one, which is turned around, the least. */
-static double tangent_value(const walker *w, const csg_tape_node *node, double value, double turn)
+/* Of a leaf at a corner, or at c behind them. */
+static double leaf_value(const walker *w, const csg_tape_node *leaf, uint32_t place)
 {
+    size_t at = (size_t)(leaf - w->tape->nodes) * w->stride;
+    return (double)w->values[at + (place < w->places ? place : w->places - 1)];
+}
+
+/* Whether it is a gradient that the leaf has, as far as is known. On a face, to rounding, the
+ * kernel's points anywhere. */
+static bool is_one_of(const csg_cone_balls *balls, csg_vec3 g)
+{
+    static const double ROUNDING = 1e-3;
+    bool any = false;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        csg_vec3 off = {g.x - ball->at[0], g.y - ball->at[1], g.z - ball->at[2]};
+        any |= csg_vec3_norm(off) <= ball->spread + ROUNDING;
+    }
+    return any;
+}
+
+/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
+ * convex one, which is turned around, the least. Infinite where that is no tangent plane: so near
+ * to a face that rounding tells its direction, or with a corner on its other side. */
+static double tangent_value(const walker *w, const csg_tape_node *node, const operand *leaf,
+                            double turn)
+{
+    static const double FAR = 1e3; /* of the rounding of a value */
     csg_tape_node alone = *node;
     csg_tape tape = *w->tape;
     alone.join = CSG_JOIN_NONE;
@@ -436,21 +346,28 @@ static double tangent_value(const walker *w, const csg_tape_node *node, double v
     tape.count = 1;
     const csg_gradients_region *r = &w->region;
     csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, r->c, w->scratch, w->scratch_floats);
-    double most = 0;
-    for (int k = 0; k < 3; k++)
-        most = fmax(most, turn * csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c)));
-    return value + turn * (most + 1e-5 * w->flat);
+    double from_face = leaf->value - (double)w->tape->parameters[node->parameters + CSG_LEAF_RAISE];
+    double value = leaf->value + turn * leaf->doubt, most = 0, slack = 1e-5 * w->flat;
+    bool is_tangent = fabs(from_face) > FAR * leaf->doubt || is_one_of(&leaf->balls, slope);
+    for (uint32_t k = 0; k < CORNERS; k++) {
+        double along = csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c));
+        double beyond = turn * (leaf_value(w, node, k) - value - along);
+        is_tangent &= beyond <= 2 * leaf->doubt + slack;
+        most = fmax(most, turn * along);
+    }
+    return is_tangent ? value + turn * (most + slack) : turn * INFINITY;
 }
 
 /* Over the triangle, from the values at its corners: no farther off than gradients stray from one
  * another, and a concave leaf is nowhere less than there. */
-static void find_range(const walker *w, const csg_tape_node *node, const float *low,
-                       const float *high, operand *leaf)
+static void find_range(const walker *w, const csg_tape_node *node, operand *leaf)
 {
     const csg_cone_ball *balls = leaf->balls.items;
     double stray = 0;
-    leaf->low = fmin((double)low[0], fmin((double)low[1], (double)low[2]));
-    leaf->high = fmax((double)high[0], fmax((double)high[1], (double)high[2]));
+    double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
+    double a = leaf_value(w, node, 0), b = leaf_value(w, node, 1), c = leaf_value(w, node, 2);
+    leaf->low = fmin(a, fmin(b, c)) - slack;
+    leaf->high = fmax(a, fmax(b, c)) + slack;
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
@@ -464,7 +381,7 @@ static void find_range(const walker *w, const csg_tape_node *node, const float *
     double beyond = concave ? leaf->high + stray * w->flat : leaf->low - stray * w->flat;
     if (leaf->balls.count > 1) {
         double turn = concave ? 1 : -1;
-        double tangent = tangent_value(w, node, leaf->value + turn * leaf->doubt, turn);
+        double tangent = tangent_value(w, node, leaf, turn);
         beyond = concave ? fmin(beyond, tangent) : fmax(beyond, tangent);
     }
     *(concave ? &leaf->high : &leaf->low) = beyond;
@@ -508,16 +425,16 @@ double csg_slopes_span(const walker *w, const operand *leaf)
     return most;
 }
 
-/* low, high: of the leaf's value at the corners, and at c behind them. */
-static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, const float *high)
+static bool push_leaf(walker *w, const csg_tape_node *node)
 {
     operand *leaf = &w->stack[w->top++];
     const csg_vec3 at = w->region.c;
     const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     leaf->balls.count = 0;
     leaf->balls.has_edges = leaf->stretched = false;
-    leaf->value = 0.5 * ((double)low[3] + (double)high[3]);
-    leaf->doubt = 0.5 * ((double)high[3] - (double)low[3]) + 1e-6 * fabs(leaf->value);
+    leaf->value = leaf_value(w, node, CORNERS);
+    leaf->doubt =
+        (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK] + 1e-6 * fabs(leaf->value);
     if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
         take_any(w, leaf);
     leaf->longest = leaf->balls.corner;
@@ -530,7 +447,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
-    find_range(w, node, low, high, leaf);
+    find_range(w, node, leaf);
     double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
     leaf->most = leaf->value + span;
@@ -540,16 +457,15 @@ static bool push_leaf(walker *w, const csg_tape_node *node, const float *low, co
 /* ---- the walk ----------------------------------------------------------------------------------
  */
 
-static bool walk(walker *w, const float *low, const float *high)
+static bool walk(walker *w)
 {
     for (uint32_t i = 0; i < w->tape->count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
-        size_t at = (size_t)i * CSG_OCTANTS;
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op))
-            known = push_leaf(w, node, low + at, high + at);
+            known = push_leaf(w, node);
         else if (csg_op_is_round(node->op))
-            known = join_round(w, node);
+            known = csg_slopes_join_round(w, node);
         else if (csg_op_is_fillet(node->op))
             known = csg_slopes_join_fillet(w, node);
         else if (known && csg_blend_is_rule(node->blend))
@@ -566,27 +482,35 @@ static bool exceeds_hull(const operand *root)
     return root->stretched || root->faces || root->balls.has_edges;
 }
 
-/* How far gradients are at most from the middle of the balls, which they are in the hull of. */
-static double find_stray(const operand *root, csg_gradients *out)
+/* The middle of the balls, whose hull they are in, or where combinations of these may be longer of
+ * a ball around those; and how far from it they are at most, along the triangle's plane alone too:
+ * of gradients that differ in length, as those of thin walls do, that is much less. */
+static void find_stray(const walker *w, const operand *root, csg_gradients *out)
 {
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
-    double stray = INFINITY;
+    out->stray = out->across = INFINITY;
     if (balls->count && exceeds_hull(root)) {
         out->is_axis_known = true;
         out->has_axis = csg_cone_find_axis(balls, &out->cone);
         if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
-            stray = middle.spread;
+            out->stray = out->across = middle.spread;
     } else if (balls->count) {
         for (uint32_t i = 0; i < balls->count; i++)
             for (int k = 0; k < 3; k++)
                 middle.at[k] += balls->items[i].at[k] / balls->count;
-        stray = 0;
-        for (uint32_t i = 0; i < balls->count; i++)
-            stray = fmax(stray, apart(&middle, &balls->items[i]));
+        out->stray = out->across = 0;
+        for (uint32_t i = 0; i < balls->count; i++) {
+            const csg_cone_ball *ball = &balls->items[i];
+            csg_vec3 off = {ball->at[0] - middle.at[0], ball->at[1] - middle.at[1],
+                            ball->at[2] - middle.at[2]};
+            double square = csg_vec3_dot(off, off), along = csg_vec3_dot(off, w->normal);
+            double across = square > along * along ? sqrt(square - along * along) : 0;
+            out->stray = fmax(out->stray, sqrt(square) + ball->spread);
+            out->across = fmax(out->across, across + ball->spread);
+        }
     }
     memcpy(out->middle, middle.at, sizeof middle.at);
-    return stray;
 }
 
 /* Of the balls' hull; where faces meet, combinations may be longer. */
@@ -601,49 +525,97 @@ static double find_longest(const operand *root)
     return most;
 }
 
+/* What the walk has left. False: no bound is known. */
+static bool take_result(const walker *w, csg_gradients *out)
+{
+    const operand *root = &w->stack[0];
+    out->balls = root->balls;
+    out->value = root->value;
+    out->longest = find_longest(root);
+    out->exceeds = exceeds_hull(root);
+    out->low = root->low;
+    out->high = root->high;
+    out->least = root->least;
+    out->most = root->most;
+    out->is_axis_known = false;
+    find_stray(w, root, out);
+    out->doubt = root->doubt;
+    out->has_level = w->has_level;
+    if (w->has_level)
+        out->level = w->level.balls;
+    return out->balls.count > 0;
+}
+
+/* 0 where it is none. */
+static csg_vec3 normal_of(const csg_vec3 v[3])
+{
+    csg_vec3 n = csg_vec3_cross(csg_vec3_sub(v[1], v[0]), csg_vec3_sub(v[2], v[0]));
+    double length = csg_vec3_norm(n);
+    return length > 0 ? csg_vec3_scale(n, 1 / length) : (csg_vec3){0, 0, 0};
+}
+
+/* Or are all of them around a place. */
+static bool have_triangles(const csg_gradients_region *regions, size_t count)
+{
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < CORNERS; k++) {
+            csg_vec3 v = regions[i].triangle[k], c = regions[i].c;
+            any |= v.x != c.x || v.y != c.y || v.z != c.z;
+        }
+    return any;
+}
+
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+                             const csg_gradients_region *regions, size_t count, float *scratch,
+                             size_t scratch_floats, csg_gradients *const *out, bool *is_known)
+{
+    enum { PLACES = CORNERS + 1 };
+    float values[CSG_SLOPES_NODES * PLACES * CSG_OCTANTS];
+    float x[PLACES * CSG_OCTANTS], y[PLACES * CSG_OCTANTS], z[PLACES * CSG_OCTANTS];
+    walker w; /* not filled: its stack is large */
+    for (size_t i = 0; i < count; i++)
+        is_known[i] = false;
+    if (tape->count > CSG_SLOPES_NODES || !tape->count)
+        return;
+    w.kernel = kernel;
+    w.tape = tape;
+    w.scratch = scratch;
+    w.scratch_floats = scratch_floats;
+    w.places = have_triangles(regions, count) ? PLACES : 1;
+    size_t all = count * w.places;
+    x[0] = y[0] = z[0] = 0; /* set also where there are no regions */
+    w.stride = (all + CSG_OCTANTS - 1) / CSG_OCTANTS * CSG_OCTANTS;
+    for (size_t i = 0; i < w.stride; i++) { /* the last one again, where vectors have more room */
+        size_t n = i < all ? i : all - 1, k = n % w.places;
+        const csg_gradients_region *r = &regions[n / w.places];
+        csg_vec3 p = k + 1 < w.places ? r->triangle[k] : r->c;
+        x[i] = (float)p.x;
+        y[i] = (float)p.y;
+        z[i] = (float)p.z;
+    }
+    kernel->leaves(tape, x, y, z, w.stride, values);
+    for (size_t i = 0; i < count; i++) {
+        w.values = values + i * w.places;
+        w.region = regions[i];
+        w.flat = 0;
+        w.top = 0;
+        w.has_level = false;
+        for (int k = 0; k < CORNERS; k++)
+            w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(w.region.triangle[k], w.region.c)));
+        w.normal = normal_of(w.region.triangle);
+        w.radius = w.flat + w.region.around + sqrt(3.0) * w.region.half;
+        is_known[i] = walk(&w) && take_result(&w, out[i]);
+    }
+}
+
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out)
 {
-    float low[CSG_SLOPES_NODES * CSG_OCTANTS], high[CSG_SLOPES_NODES * CSG_OCTANTS];
-    float x[CSG_OCTANTS], y[CSG_OCTANTS], z[CSG_OCTANTS];
-    walker w; /* not filled: its stack is large */
-    if (tape->count > CSG_SLOPES_NODES || !tape->count)
-        return false;
-    w.kernel = kernel;
-    w.tape = tape;
-    w.region = *region;
-    w.flat = 0;
-    w.scratch = scratch;
-    w.scratch_floats = scratch_floats;
-    w.top = 0;
-    w.has_level = false;
-    for (int k = 0; k < CSG_OCTANTS; k++) {
-        csg_vec3 p = k < 3 ? region->triangle[k] : region->c;
-        x[k] = (float)p.x;
-        y[k] = (float)p.y;
-        z[k] = (float)p.z;
-        w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(p, region->c)));
-    }
-    w.radius = w.flat + region->around + sqrt(3.0) * region->half;
-    kernel->intervals(tape, x, y, z, 0, NULL, low, high, scratch);
-    if (!walk(&w, low, high))
-        return false;
-    out->balls = w.stack[0].balls;
-    out->value = w.stack[0].value;
-    out->longest = find_longest(&w.stack[0]);
-    out->exceeds = exceeds_hull(&w.stack[0]);
-    out->low = w.stack[0].low;
-    out->high = w.stack[0].high;
-    out->least = w.stack[0].least;
-    out->most = w.stack[0].most;
-    out->is_axis_known = false;
-    out->stray = find_stray(&w.stack[0], out);
-    out->doubt = w.stack[0].doubt;
-    out->has_level = w.has_level;
-    if (w.has_level)
-        out->level = w.level.balls;
-    return out->balls.count > 0;
+    bool is_known;
+    csg_gradients_find_each(kernel, tape, region, 1, scratch, scratch_floats, &out, &is_known);
+    return is_known;
 }
 
 bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)

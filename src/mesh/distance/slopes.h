@@ -38,8 +38,9 @@ typedef struct csg_gradients {
     double low, high;   /* over the triangle */
     double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
-    bool exceeds; /* they may be combinations of the balls with weights of more than 1 in all */
-    double stray; /* no gradient is farther from `middle`; INFINITY: not known */
+    bool exceeds;  /* they may be combinations of the balls with weights of more than 1 in all */
+    double stray;  /* no gradient is farther from `middle`; INFINITY: not known */
+    double across; /* the same, of their parts along the triangle */
     double middle[3];
     double doubt;                 /* rounding of the field's values */
     csg_cone cone;                /* the axis of `balls`, if it was looked for on the way */
@@ -50,6 +51,12 @@ typedef struct csg_gradients {
 bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
+
+/* The same of up to CSG_OCTANTS regions in which one tape holds: values of leaves are asked for all
+ * at once. is_known: of which a bound is known. */
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+                             const csg_gradients_region *regions, size_t count, float *scratch,
+                             size_t scratch_floats, csg_gradients *const *out, bool *is_known);
 
 /* The direction that all gradients have in common (csg_cone_find_axis of the balls). */
 bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out);

@@ -22,7 +22,11 @@ typedef struct csg_slopes_walker {
     const csg_kernel *kernel;
     const csg_tape *tape;
     csg_gradients_region region;
+    csg_vec3 normal;     /* of the triangle */
     double radius, flat; /* of the ball around c that holds the region; the triangle */
+    const float *values; /* of node number i from i times the stride on, at so many places */
+    size_t stride;
+    uint32_t places; /* the triangle's corners, but where these are all c, and c */
     float *scratch;
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
@@ -45,13 +49,20 @@ typedef enum csg_slopes_which {
 } csg_slopes_which;
 
 double csg_slopes_value(const csg_slopes_operand *o, csg_slopes_which what);
-/* By how much the difference of two operands can change from c, within the region. */
+/* By how much the difference of two operands can change within the region. Between faces' normals a
+ * unit vector is at most 1 / cos(phi / 4) as far from any other as one of these, where they are phi
+ * apart: at most sqrt(2), for a disc without thickness. */
+double csg_slopes_change(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                         const csg_slopes_operand *b);
+/* The same from c, with rounding. */
 double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
                         const csg_slopes_operand *b);
 /* a becomes the mixture with b, in any of the shares of a; the value is the caller's. False: no
  * bound is known. */
 bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slopes_range share,
                     bool is_sharp);
+/* Of a round operator, whose operands are on the stack. False: no bound is known. */
+bool csg_slopes_join_round(csg_slopes_walker *w, const csg_tape_node *node);
 /* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */
 bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
 /* A blend by a rule of lengths, of the two operands on top of the stack. What they become has no

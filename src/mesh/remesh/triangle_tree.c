@@ -269,29 +269,40 @@ static double distance_to_corner(const csg_triangle_box *box, csg_vec3 p)
     return square;
 }
 
-bool csg_triangle_tree_is_near(const csg_triangle_tree *t, csg_vec3 at, double most)
+static bool is_in_leaf(const csg_triangle_tree *t, size_t node, csg_vec3 at, double least)
 {
-    size_t stack[CSG_TRIANGLE_TREE_STACK], top = 0;
+    uint32_t found = CSG_CORNER_NONE;
+    look_at_leaf(t, node - t->leaf_count, at, &least, &found);
+    return found != CSG_CORNER_NONE;
+}
+
+bool csg_triangle_tree_is_near(const csg_triangle_tree *t, csg_vec3 at, double most, size_t *last)
+{
+    size_t stack[CSG_TRIANGLE_TREE_STACK], top = 0, hint = *last;
     double least = most * most;
-    stack[top++] = 1;
+    bool is_hinted = hint >= t->leaf_count && hint < 2 * t->leaf_count;
+    if (is_hinted && distance_to_box(&t->nodes[hint], at) < least && is_in_leaf(t, hint, at, least))
+        return true;
+    if (distance_to_box(&t->nodes[1], at) < least)
+        stack[top++] = 1; /* an empty box is infinitely far */
     while (top) {
         size_t i = stack[--top];
-        if (!(distance_to_box(&t->nodes[i], at) < least))
-            continue; /* an empty box, too: it is infinitely far */
-        if (distance_to_corner(&t->nodes[i], at) < least)
-            return true;
         if (i >= t->leaf_count) {
-            double square = least;
-            uint32_t found = CSG_CORNER_NONE;
-            look_at_leaf(t, i - t->leaf_count, at, &square, &found);
-            if (found != CSG_CORNER_NONE)
+            *last = i;
+            if (i != hint && is_in_leaf(t, i, at, least))
                 return true;
             continue;
         }
-        bool near =
-            distance_to_box(&t->nodes[2 * i + 1], at) < distance_to_box(&t->nodes[2 * i], at);
-        stack[top++] = 2 * i + !near;
-        stack[top++] = 2 * i + near;
+        double first = distance_to_box(&t->nodes[2 * i], at);
+        double second = distance_to_box(&t->nodes[2 * i + 1], at);
+        if ((first < least && distance_to_corner(&t->nodes[2 * i], at) < least) ||
+            (second < least && distance_to_corner(&t->nodes[2 * i + 1], at) < least))
+            return true;
+        bool nearer = second < first;
+        if ((nearer ? first : second) < least)
+            stack[top++] = 2 * i + !nearer;
+        if ((nearer ? second : first) < least)
+            stack[top++] = 2 * i + nearer;
     }
     return false;
 }

@@ -86,7 +86,10 @@ void csg_triangle_tree_corners(const csg_triangle_tree *tree, uint32_t triangle,
  * Any thread. */
 double csg_triangle_tree_nearest(const csg_triangle_tree *tree, csg_vec3 at, double most,
                                  uint32_t *triangle);
-/* Whether some triangle is nearer than `most`, without looking for the nearest. Any thread. */
-bool csg_triangle_tree_is_near(const csg_triangle_tree *tree, csg_vec3 at, double most);
+/* Whether some triangle is nearer than `most`, without looking for the nearest. Any thread. *last:
+ * of a caller that asks for places one beside the other, in the beginning 0; where it looks first.
+ */
+bool csg_triangle_tree_is_near(const csg_triangle_tree *tree, csg_vec3 at, double most,
+                               size_t *last);
 
 #endif
