@@ -87,6 +87,13 @@ intersection(blend = 0.3) {
         self.assertLess(chamfered, 1.5 * sharp)
         self.assertEqual(before[1]["features"]["left_smooth"], 0)
 
+    def test_chamfer_of_two_thirds_of_the_tolerance(self):
+        """Triangles that cut it off are within half a tolerance of its corner; when a fifth was asked for, 65 382 were to be thinned out."""
+        stats = self.stats("rotate_extrude() polygon([[0, 0], [30, 0], [30, 19.98], [29.98, 20], [0, 20]]);")
+        self.assertEqual(stats["lattice"]["tolerance"], 0.03125)
+        self.assertLess(stats["mesh"]["triangles_before"], 20000)
+        self.assertEqual(stats["features"]["left_smooth"], 0)
+
     def test_dent_in_a_turned_block(self):
         """1.2 T wide and deep; steps through the corners of its cube hardly leave one of its faces."""
         block = "union() { cube([8, 6, 2], center = true); translate([-2.914121, 0.696130, 1.087398]) sphere(0.0145663); }"

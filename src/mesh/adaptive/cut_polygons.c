@@ -9,11 +9,12 @@
 enum { MOST_OF_ONE = 4 * CSG_POLYGON_MOST, MOST = 4 * MOST_OF_ONE };
 
 /* Cosine between the normals of a triangle and of its sheet: below it, the triangle looks away. */
-static const double LOOKS_AWAY = 0.17;
-/* Of the tolerance: fans that are so near have their creases as edges, up to the apex at least.
- * Where sheets turn by more than 30 degrees from their mean, what a fan cuts off may be farther
- * from it than it is from the surface, several times. */
-static const double BLUNT = 0.866, NEAR_IF_BLUNT = 0.5, NEAR_IF_SHARP = 0.2;
+static const double LOOKS_AWAY = 0;
+/* Of the tolerance: fans that are so near have their creases as edges, up to the apex at least. The
+ * first is how far what they cut off may be from them: where sheets meet whose normals are turned
+ * from their mean by an angle, it is as far as the fan is from the sheets, over the cosine of that.
+ */
+static const double NEAR = 0.55, NEAR_ANYWAY = 0.2;
 
 typedef struct points {
     float x[MOST + CSG_LANES], y[MOST + CSG_LANES], z[MOST + CSG_LANES], f[MOST + CSG_LANES];
@@ -276,8 +277,8 @@ void csg_cuts_find_distances(csg_sheet_probe *probe, csg_cut_polygon *const *pie
 void csg_cuts_settle_near(csg_cut_polygon *const *fans, int count, double tolerance)
 {
     for (int i = 0; i < count; i++) {
-        bool is_blunt = csg_polygon_least_cosine(&fans[i]->polygon) > BLUNT;
-        if (!(fans[i]->distance <= (is_blunt ? NEAR_IF_BLUNT : NEAR_IF_SHARP) * tolerance))
+        double near = NEAR * csg_polygon_least_cosine(&fans[i]->polygon);
+        if (!(fans[i]->distance <= fmax(near, NEAR_ANYWAY) * tolerance))
             continue;
         fans[i]->polygon.is_torn = false;
         if (fans[i]->kind == CSG_APEX_FAILED)
