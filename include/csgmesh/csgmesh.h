@@ -452,7 +452,8 @@ typedef struct csgm_mesh csgm_mesh;
 typedef enum csgm_normals {
     CSGM_NORMALS_NONE,
     CSGM_NORMALS_VERTEX, /* one per vertex: the field's gradient; at a crease, the mean of the
-                            sheets' gradients */
+                            sheets' gradients. Of meshes that were thinned out, those with which
+                            triangles show the surface's own best in the mean */
     CSGM_NORMALS_CREASE  /* at creases and corners there is a vertex for each sheet, one after the
                             other and with bit-equal positions: the mesh is closed once vertices of
                             equal position are welded */

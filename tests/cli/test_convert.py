@@ -8,6 +8,7 @@ import struct
 import unittest
 
 import cli
+import shading
 
 PARTS = """part("body") color("red") cube([20, 20, 5]);
 part("lid") color([0, 0.5, 1, 0.5]) translate([0, 0, 8]) sphere(r = 5);
@@ -241,6 +242,15 @@ class Reshaping(ConvertTest):
 
     def closed(self, facts):
         return facts["boundary_edges"] == facts["nonmanifold_edges"] == facts["misoriented_edges"] == 0
+
+    def test_flat_faces_stay_flat(self):
+        """Shaded by angles alone, faces between roundings tilt by 8 degrees at their corners."""
+        self.write("scene.txt", "cube([30, 20, 10], round = 1);")
+        self.assert_status(cli.run("scene.txt", "-q", "-r", "64", "-o", "in.glb", cwd=self.folder), 0)
+        self.assert_status(cli.run("convert", "in.glb", "-q", "--simplify", "0.02", "-o", "out.obj", cwd=self.folder), 0)
+        count, tilt = shading.tilt_of_large_faces(self.path("out.obj"), 15)
+        self.assertGreater(count, 10)
+        self.assertLess(tilt, 3)
 
     def test_simplify_within(self):
         self.mesh("parts.txt", "-o", "fine.glb", "-r", "36")

@@ -3,10 +3,10 @@
 plate are there, bounds, parts, colours and formats are as on equal cells, and what excludes each other is said.
 """
 import json
-import math
 import unittest
 
 import cli
+import shading
 
 LETTERS = 'cube([400, 300, 5]);\ntranslate([20, 20, 5]) linear_extrude(1) text("Io", size = 4);\n'
 PAIR = 'part("a") color("red") cube(4);\npart("b") color("blue") translate([6, 0, 0]) sphere(3);\n'
@@ -119,24 +119,9 @@ intersection(blend = 0.3) {
         """Where they end in a rounding, the surface's normals turn by up to 9 degrees within the tolerance: viewers would bend all of a face."""
         self.write("scene.txt", "cube([30, 20, 10], round = 1);")
         self.assert_status(cli.run("scene.txt", "-q", "-o", "out.obj", cwd=self.folder), 0)
-        with open(self.path("out.obj"), encoding="utf-8") as file:
-            lines = [line.split() for line in file]
-        at, normals = ([[float(x) for x in words[1:4]] for words in lines if words[:1] == [kind]] for kind in ("v", "vn"))
-        large = 0
-        for words in lines:
-            if words[:1] != ["f"]:
-                continue
-            corners = [[int(x or 0) - 1 for x in word.split("/")] for word in words[1:]]
-            a, b, c = (at[corner[0]] for corner in corners)
-            u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
-            cross = [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
-            area = math.hypot(*cross)
-            if area > 30:
-                large += 1
-                for corner in corners:
-                    cosine = sum(cross[k] * normals[corner[-1]][k] for k in range(3)) / area
-                    self.assertLess(math.degrees(math.acos(min(cosine, 1))), 1)
-        self.assertGreater(large, 10)
+        count, tilt = shading.tilt_of_large_faces(self.path("out.obj"), 15)
+        self.assertGreater(count, 10)
+        self.assertLess(tilt, 1)
 
     def test_finer_is_nearer(self):
         volumes = [self.stats("sphere(10);", "--quality", q)["mesh"]["volume"] for q in ("draft", "normal", "fine")]

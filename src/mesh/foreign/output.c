@@ -99,15 +99,17 @@ static double angle_between(csg_vec3 a, csg_vec3 b)
     return csg_atan2(csg_vec3_norm(csg_vec3_cross(a, b)), csg_vec3_dot(a, b));
 }
 
+/* By angles, so that it does not matter how a face is cut into triangles, times areas: where a
+ * large plane face ends in a rounding, viewers would bend all of it otherwise. */
 static void sum_normals(const csg_halfedge_mesh *mesh, shading *s)
 {
     for (uint32_t half = 0; half < 3 * mesh->triangle_count; half++) {
         const uint32_t *c = mesh->corners[half / 3];
-        csg_vec3 p = at(mesh, c[half % 3]);
-        double angle = angle_between(csg_vec3_sub(at(mesh, c[(half + 1) % 3]), p),
-                                     csg_vec3_sub(at(mesh, c[(half + 2) % 3]), p));
+        csg_vec3 p = at(mesh, c[half % 3]), a = csg_vec3_sub(at(mesh, c[(half + 1) % 3]), p),
+                 b = csg_vec3_sub(at(mesh, c[(half + 2) % 3]), p);
+        double weight = angle_between(a, b) * csg_vec3_norm(csg_vec3_cross(a, b));
         csg_vec3 *sum = &s->sums[csg_set_root(s->cluster, half)];
-        *sum = csg_vec3_add(*sum, csg_vec3_scale(s->faces[half / 3], angle));
+        *sum = csg_vec3_add(*sum, csg_vec3_scale(s->faces[half / 3], weight));
     }
 }
 
