@@ -40,6 +40,17 @@ enum {
     CSG_BLOCK_POINTS_PADDED = (CSG_BLOCK_POINTS + CSG_LANES - 1) / CSG_LANES * CSG_LANES
 };
 
+/* Gives a tape of the block's field the nodes that hold in one of its cells, which the surface
+ * crosses. */
+static inline void csg_block_choose_tape(const csg_block *block, const int cell[3], csg_tape *tape)
+{
+    unsigned octant = 0;
+    for (int axis = 0; axis < 3; axis++)
+        octant |= (unsigned)(cell[axis] >= CSG_PART_EDGE) << axis;
+    tape->nodes = block->parts ? block->parts[octant].nodes : block->nodes;
+    tape->count = block->parts ? block->parts[octant].node_count : block->node_count;
+}
+
 /* One thread's room for sampling: coordinates and values, x fastest; a part has 5^3 points. */
 typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];

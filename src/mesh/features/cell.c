@@ -103,16 +103,13 @@ static const csg_block *block_of(const csg_octree *octree, const uint32_t cell[3
     return NULL;
 }
 
-/* From a block in memory: its signs, and the tape of the part of it that has the cell. */
+/* From a block in memory. */
 static unsigned pattern_in_block(const csg_block *block, const uint32_t cell[3], csg_tape *tape)
 {
-    csg_cell_rows rows = csg_cell_rows_of(block, (int)(cell[1] % E), (int)(cell[2] % E));
-    unsigned octant = 0;
-    for (int axis = 0; axis < 3; axis++)
-        octant |= (unsigned)(cell[axis] % E >= CSG_PART_EDGE) << axis;
-    tape->nodes = block->parts ? block->parts[octant].nodes : block->nodes;
-    tape->count = block->parts ? block->parts[octant].node_count : block->node_count;
-    return csg_cell_pattern(&rows, (int)(cell[0] % E));
+    const int own[3] = {(int)(cell[0] % E), (int)(cell[1] % E), (int)(cell[2] % E)};
+    csg_cell_rows rows = csg_cell_rows_of(block, own[1], own[2]);
+    csg_block_choose_tape(block, own, tape);
+    return csg_cell_pattern(&rows, own[0]);
 }
 
 uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,

@@ -52,16 +52,12 @@ static const float *nearest_corner(const csg_feature *f, int sheet)
     return nearest;
 }
 
-/* The tape of the block, or of the part of it that has the feature's cell. */
+/* That which holds in the feature's cell. */
 static csg_tape tape_of_cell(const csg_marching *m, const csg_block *block, const csg_feature *f)
 {
     csg_tape tape = m->field->tape;
     const int cell[3] = {f->cell & 7, f->cell >> 3 & 7, f->cell >> 6};
-    unsigned octant = 0;
-    for (int axis = 0; axis < 3; axis++)
-        octant |= (unsigned)(cell[axis] >= CSG_PART_EDGE) << axis;
-    tape.nodes = block->parts ? block->parts[octant].nodes : block->nodes;
-    tape.count = block->parts ? block->parts[octant].node_count : block->node_count;
+    csg_block_choose_tape(block, cell, &tape);
     return tape;
 }
 

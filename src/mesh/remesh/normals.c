@@ -20,12 +20,6 @@ typedef struct fit {
     size_t count;
 } fit;
 
-static void corners_of(const csg_remesh *r, uint32_t triangle, csg_vec3 v[3])
-{
-    for (uint32_t k = 0; k < 3; k++)
-        v[k] = csg_remesh_corner(r, 3 * triangle + k);
-}
-
 /* Near each corner: two thirds of the way from the middle of the other side. */
 static void place_points(const csg_vec3 v[3], float (*at)[3])
 {
@@ -62,12 +56,12 @@ static void ask_some(void *user, csg_probe *probe, size_t first, size_t end)
     float at[POINTS * TRIANGLES][3], gradient[POINTS * TRIANGLES][3];
     csg_vec3 v[3];
     for (size_t i = first; i < end; i++) {
-        corners_of(f->remesh, f->triangles[i], v);
+        csg_triangle_tree_corners(&f->remesh->tree, f->triangles[i], v);
         place_points(v, at + POINTS * (i - first));
     }
     csg_probe_true_gradients(probe, (const float(*)[3])at, POINTS * (end - first), gradient);
     for (size_t i = first; i < end; i++) {
-        corners_of(f->remesh, f->triangles[i], v);
+        csg_triangle_tree_corners(&f->remesh->tree, f->triangles[i], v);
         continue_to_corners(v, (const float(*)[3])(gradient + POINTS * (i - first)), f->there[i]);
     }
 }
@@ -77,7 +71,7 @@ static void add_up(const fit *f, const uint32_t *number, csg_vec3 *normals)
 {
     for (size_t i = 0; i < f->count; i++) {
         csg_vec3 v[3];
-        corners_of(f->remesh, f->triangles[i], v);
+        csg_triangle_tree_corners(&f->remesh->tree, f->triangles[i], v);
         double area = csg_vec3_norm(csg_triangle_cross(v[0], v[1], v[2]));
         for (size_t k = 0; k < POINTS; k++) {
             csg_vec3 *sum = &normals[number[3 * (size_t)f->triangles[i] + k]];

@@ -43,10 +43,7 @@ void csg_remesh_values_at_centroids(csg_remesh *r, const uint8_t *wanted, float 
     uint32_t of[BATCH], count = r->corners.triangle_count, n = 0;
     for (uint32_t t = 0; t < count; t++) {
         if (csg_corners_is_live(&r->corners, t) && (!wanted || wanted[t])) {
-            csg_vec3 sum = csg_vec3_add(
-                csg_remesh_corner(r, 3 * t),
-                csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
-            csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+            csg_vec3_to_floats(at[n], csg_remesh_centroid(r, t));
             of[n++] = t;
         }
         if (n < BATCH && t + 1 < count)

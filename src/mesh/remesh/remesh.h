@@ -78,6 +78,14 @@ static inline csg_vec3 csg_remesh_corner(const csg_remesh *remesh, uint32_t c)
     return remesh->at[remesh->corners.vertex[c]];
 }
 
+static inline csg_vec3 csg_remesh_centroid(const csg_remesh *remesh, uint32_t triangle)
+{
+    csg_vec3 sum = csg_vec3_add(csg_remesh_corner(remesh, 3 * triangle),
+                                csg_vec3_add(csg_remesh_corner(remesh, 3 * triangle + 1),
+                                             csg_remesh_corner(remesh, 3 * triangle + 2)));
+    return csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3);
+}
+
 /* The field at the centroids of all triangles, or, if `wanted` is not NULL, of those t with
  * wanted[t]; out[t] of others, and of one that is gone, stays as it is. */
 void csg_remesh_values_at_centroids(csg_remesh *remesh, const uint8_t *wanted, float *out);

@@ -2,7 +2,6 @@
  * The changed mesh back into csgm_mesh arrays: numbers without gaps, normals, at creases a
  * vertex for each sheet where that is asked for.
  */
-#include <math.h>
 #include <string.h>
 
 #include "mesh/remesh/normals.h"

@@ -121,10 +121,7 @@ static void find_some_bulges(void *user, csg_probe *probe, size_t first, size_t 
         b->at[t][0] = NAN;
         if (!csg_corners_is_live(&r->corners, t) || !may_bulge(b->decimation, t, b->normals))
             continue;
-        csg_vec3 sum = csg_vec3_add(
-            csg_remesh_corner(r, 3 * t),
-            csg_vec3_add(csg_remesh_corner(r, 3 * t + 1), csg_remesh_corner(r, 3 * t + 2)));
-        csg_vec3_to_floats(at[n], csg_vec3_make(sum.x / 3, sum.y / 3, sum.z / 3));
+        csg_vec3_to_floats(at[n], csg_remesh_centroid(r, t));
         of[n++] = t;
     }
     if (n)
