@@ -16,7 +16,8 @@ SCENES = os.environ["CSGMESH_SCENES"]
 
 # A decorator of tests that only have more cubes, triangles or scenes than the others: with sanitizers they take five to ten
 # times as long and look at the same code.
-optimised_only = unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "the optimised build has it")
+SANITIZED = os.environ.get("CSGMESH_SANITIZED") == "1"
+optimised_only = unittest.skipIf(SANITIZED, "the optimised build has it")
 
 BALL = "sphere(r = 1);\n"
 ENDLESS = "for (i = [0 : 99999]) for (j = [0 : 99999]) if (i < 0) sphere(i);\n"

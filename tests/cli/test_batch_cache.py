@@ -250,7 +250,7 @@ class Writers(CacheTest):
 
 
 @needs_hashes
-@unittest.skipIf(os.environ.get("CSGMESH_SANITIZED") == "1", "sanitizers have functions of their own")
+@unittest.skipIf(cli.SANITIZED, "sanitizers have functions of their own")
 class NoLocks(Writers):
     """The same, and two machines in one folder of outputs, where locks and files without names do not work."""
     test_full_disk = test_one_cache_for_many = None

@@ -263,6 +263,7 @@ class Reshaping(ConvertTest):
 
     @cli.optimised_only
     @cli.optimised_only
+    @cli.optimised_only
     def test_share_and_count(self):
         self.mesh("parts.txt", "-o", "fine.ply", "-r", "60")  # of -r 60 diff once did not end
         have = self.info("fine.ply")["triangles"]

@@ -79,6 +79,7 @@ class Diff(diff_support.DiffTest):
         self.assertIn(b"normals differ", self.diff(1, "v.glb", "s.txt", "-r", "24", "--normals", "crease").stdout)
         self.assertIn(b"colours differ", self.diff(1, "s.ply", "s.txt", "-r", "24", "--colors", "none").stdout)
 
+    @cli.optimised_only
     def test_two_scenes_get_one_tolerance(self):
         """The smaller of theirs, at most a quarter of --tol, at least that of --quality fine; equal cells are as asked for."""
         small = "cube(10); translate([5, 5, 9.5]) sphere(1);\n"
@@ -205,6 +206,7 @@ class Diff(diff_support.DiffTest):
         self.assertIn(b"A is now B", self.diff(0, "new.ply", "c.ply", "--update").stdout)
         self.assertEqual(self.read("new.ply"), self.read("c.ply"))
 
+    @cli.optimised_only
     def test_update_keeps_settings(self):
         """Text stays text and what is compressed compressed, whatever the other file or a scene's default is."""
         self.write("knob.txt", KNOB)

@@ -9,7 +9,7 @@ import time
 import cli
 
 # A sanitizer's process takes longer to go away than the work takes to stop.
-PATIENCE_S = 2.0 if os.environ.get("CSGMESH_SANITIZED") == "1" else 0.1
+PATIENCE_S = 2.0 if cli.SANITIZED else 0.1
 
 
 def as_from_a_terminal():

@@ -18,6 +18,7 @@ import cli
 PROGRAM = os.environ.get("CSGMESH_MPI", "")
 STRESS = os.path.join(cli.SCENES, "stress")
 RANKS = (1, 2, 4, 7)
+FEW = 3
 PARTS = """part("base") color("red") difference() { cube([4, 3, 1]); translate([2, 1.5, -1]) cylinder(h = 3, r = 1); }
 part("nothing") intersection() { cube(1); translate([3, 0, 0]) cube(1); }
 part("ball") color("blue") translate([2, 1.5, 2]) sphere(r = 0.9);
@@ -71,6 +72,8 @@ class Ranks(cli.CliTest):
 
     def compare(self, name, scene, extension, counts, *options):
         one, many = "one." + extension, "many." + extension
+        if cli.SANITIZED:  # each rank goes through the same code: a few show what many do
+            counts = [min(counts[-1], FEW)]
         self.assert_status(self.run_in(scene, "-o", one, *options), 0)
         for count in counts:
             with self.subTest(name, extension=extension, ranks=count):
@@ -129,9 +132,9 @@ class Ranks(cli.CliTest):
     @cli.optimised_only
     def test_tiles(self):
         """Cells that follow the shape where the limit makes each rank thin them out in tiles: another file than with all memory."""
-        self.write("lattice.txt", "intersection() { cube([10, 10, 10]); gyroid(cell = 8, thickness = 1); }")
+        self.write("lattice.txt", "intersection() { cube([4, 4, 4]); gyroid(cell = 8, thickness = 1); }")
         cross = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
-        for scene, limit, counts, *options in (("lattice.txt", "16M", (2, 4), "-e", "0.05"), (cross, "8M", (3, 7))):
+        for scene, limit, counts, *options in (("lattice.txt", "8M", (2, 4), "-e", "0.05"), (cross, "8M", (3, 7))):
             self.compare(f"tiles of {scene}", scene, "ply", counts, "--max-memory", limit, *options)
             self.assert_status(self.run_in(scene, "-o", "tiles.ply", "--max-memory", limit, *options), 0)
             self.assert_status(self.run_in(scene, "-o", "whole.ply", *options), 0)

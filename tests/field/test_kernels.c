@@ -466,14 +466,14 @@ static void test_fillets(void **state)
     csg_random random = {test_first_seed + 6};
     size_t compared = 0;
     test_random_fillets = true;
-    for (unsigned i = 0; i < 60 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(60) * test_times; i++) {
         test_random_shapes = i % 3 == 1;
         test_random_curves = i % 5 == 3;
         test_random_rules = i % 4 == 2;
         compared += check_fillets(&random, i);
     }
     test_random_fillets = test_random_shapes = test_random_curves = test_random_rules = false;
-    assert_true(compared > 60 * test_times * 250);
+    assert_true(compared > ROUNDS(60) * test_times * 250);
 }
 
 int main(int argc, char **argv)

@@ -35,7 +35,7 @@ static void test_random_scenes(void **state)
 {
     walk totals = {0};
     csg_random random = {test_first_seed + 21};
-    for (unsigned i = 0; i < 150 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(150) * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "random scene %u", i);
@@ -57,7 +57,7 @@ static void test_outlines(void **state)
     walk totals = {0};
     csg_random random = {test_first_seed + 27};
     test_random_outlines = true;
-    for (unsigned i = 0; i < 200 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(200) * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "outline %u", i);
@@ -75,7 +75,7 @@ static void test_raised_extrusions(void **state)
 {
     walk totals = {0};
     csg_random random = {test_first_seed + 29};
-    for (unsigned i = 0; i < 300 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(300) * test_times; i++) {
         walk w = {0};
         char what[48];
         csg_node_id squares[2];
@@ -105,7 +105,7 @@ static void test_random_fillet_scenes(void **state)
     walk totals = {0};
     csg_random random = {test_first_seed + 23};
     test_random_fillets = true;
-    for (unsigned i = 0; i < 150 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(150) * test_times; i++) {
         walk w = {0};
         char what[48];
         snprintf(what, sizeof what, "random fillets %u", i);
@@ -150,7 +150,7 @@ static void test_pairs_of_fillets(void **state)
     static test_points points;
     static test_results pair, three;
     csg_random random = {test_first_seed + 24};
-    for (unsigned i = 0; i < 60 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(60) * test_times; i++) {
         test_subject s[2];
         csg_node_kind how = i % 3 ? CSG_NODE_UNION : CSG_NODE_DIFFERENCE;
         double apart = i % 3 == 2 ? 0.7 : 0;

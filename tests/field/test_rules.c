@@ -23,6 +23,7 @@ static const csg_blend_kind kinds[] = {
 static const char *const names[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) #name,
 #include "scene/operators/operators.def"
+#include "rounds.h"
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -367,16 +368,17 @@ static void prune_trees(uint64_t seed, unsigned count, bool turning, walk *total
 static void test_pruned_trees(void **state)
 {
     walk totals = {0};
-    prune_trees(52, 120, false, &totals);
-    assert_true(totals.cells > 2000 && totals.outside > 300 && totals.shortened > 200);
-    assert_true(totals.in_band > 5000);
+    prune_trees(52, ROUNDS(120), false, &totals);
+    assert_true(totals.cells > ROUNDS(2000) && totals.outside > ROUNDS(300) &&
+                totals.shortened > ROUNDS(200));
+    assert_true(totals.in_band > ROUNDS(5000));
 }
 
 static void test_turning_trees(void **state)
 {
     walk totals = {0};
-    prune_trees(53, 60, true, &totals);
-    assert_true(totals.cells > 800 && totals.shortened > 60);
+    prune_trees(53, ROUNDS(60), true, &totals);
+    assert_true(totals.cells > ROUNDS(800) && totals.shortened > ROUNDS(60));
 }
 
 /* Values and bits of the same trees. */
@@ -385,7 +387,7 @@ static void test_values_of_trees(void **state)
     static test_points points;
     static test_results results;
     csg_random random = {54};
-    for (unsigned i = 0; i < 80; i++) {
+    for (unsigned i = 0; i < ROUNDS(80); i++) {
         test_subject s;
         char what[40];
         snprintf(what, sizeof what, "tree %u", i);

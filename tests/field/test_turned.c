@@ -225,7 +225,7 @@ static void test_builds(void **state)
     csg_random random = {test_first_seed + 43};
     const csg_kernel *kernels[8];
     size_t kernel_count = test_kernels(kernels), changed = 0;
-    for (unsigned i = 0; i < 40 * test_times; i++) {
+    for (unsigned i = 0; i < ROUNDS(40) * test_times; i++) {
         test_subject s;
         test_random_fillets = i % 4 != 0;
         test_random_rules = i % 2;
@@ -247,7 +247,7 @@ static void test_builds(void **state)
         test_subject_end(&s);
     }
     test_random_fillets = test_random_rules = false;
-    assert_true(changed > 20 * test_times);
+    assert_true(changed > ROUNDS(20) * test_times);
 }
 
 int main(int argc, char **argv)

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "io/format_table.h"
+#include "rounds.h"
 
 static csgm_mesh *read_as(io_context *io, const char *name, const void *bytes, size_t size)
 {
@@ -376,6 +377,9 @@ static void draco_options_count(void **state)
 static void four_gigabytes_are_refused(void **state)
 {
     (void)state;
+#ifdef TEST_SANITIZED /* two gigabytes of one loop: the optimised build has them */
+    skip();
+#endif
     const uint64_t vertices = 180000000;
     io_context io;
     io_context_init(&io, 0);

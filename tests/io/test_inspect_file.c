@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/random.h"
+#include "rounds.h"
 
 enum { NARROW = 1900000 };
 
@@ -200,7 +201,7 @@ static void changed_bytes(void **state)
 {
     (void)state;
     static const char *const names[] = {"a.ply", "a.stl"};
-    enum { CHANGES = 12 };
+    enum { CHANGES = ROUNDS(12) };
     io_context io;
     char folder[200], path[300];
     csg_random random = {7};

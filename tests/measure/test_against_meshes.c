@@ -72,7 +72,7 @@ static bool try_scene(mesh_case *m, uint64_t seed)
 static void measures_hold(void **state)
 {
     uint32_t tried = 0;
-    for (uint64_t i = 0; i < 12 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(12) * test_times; i++) {
         uint64_t seed = 31000 + test_first_seed + i;
         csg_random random = {.state = seed};
         mesh_case m;
@@ -87,7 +87,7 @@ static void measures_hold(void **state)
         tried += try_scene(&m, seed);
         mesh_case_end(&m);
     }
-    assert_true(tried > 4 * test_times);
+    assert_true(tried > ROUNDS(4) * test_times);
 }
 
 int main(int argc, char **argv)

@@ -149,11 +149,11 @@ static void try_box(uint64_t n, tally *seen)
 static void boxes_hold(void **state)
 {
     tally seen = {0};
-    for (uint64_t i = 0; i < 40 * test_times; i++)
+    for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++)
         try_box(test_first_seed + i, &seen);
-    assert_true(seen.pieces > 1000 * test_times && seen.values > 60000 * test_times);
-    assert_true(seen.gradients > 50000 * test_times);
-    assert_true(seen.volumes > 100 * test_times && seen.areas > 25 * test_times);
+    assert_true(seen.pieces > ROUNDS(1000) * test_times && seen.values > ROUNDS(60000) * test_times);
+    assert_true(seen.gradients > ROUNDS(50000) * test_times);
+    assert_true(seen.volumes > ROUNDS(100) * test_times && seen.areas > ROUNDS(25) * test_times);
 }
 
 /* In one cube of it a piece whose own error is large in one place and small in the mean shares
@@ -168,7 +168,7 @@ static void columns_of_several_pieces_hold(void **state)
 static void joins_hold(void **state)
 {
     tally seen = {0};
-    for (uint64_t i = 0; i < 40 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++) {
         csg_random random = {.state = seed = 43000 + test_first_seed + i};
         const csg_blend blend = {KINDS[i % KIND_COUNT], csg_random_uniform(&random, 0.1, 0.6),
                                  false};
@@ -184,9 +184,9 @@ static void joins_hold(void **state)
         try_solid(&m, solid, &random, blend.kind != CSG_BLEND_FILLET, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.pieces > 1000 * test_times && seen.values > 60000 * test_times);
-    assert_true(seen.gradients > 50000 * test_times);
-    assert_true(seen.volumes > 130 * test_times && seen.areas > 30 * test_times);
+    assert_true(seen.pieces > ROUNDS(1000) * test_times && seen.values > ROUNDS(60000) * test_times);
+    assert_true(seen.gradients > ROUNDS(50000) * test_times);
+    assert_true(seen.volumes > ROUNDS(130) * test_times && seen.areas > ROUNDS(30) * test_times);
 }
 
 /* Operands of a fillet that do not meet have no say in how others blend. */

@@ -207,7 +207,7 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
 static void models_hold(void **state)
 {
     tally seen = {0};
-    for (uint64_t i = 0; i < 80 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(80) * test_times; i++) {
         csg_random random = {.state = seed = 31000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
@@ -220,9 +220,9 @@ static void models_hold(void **state)
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.known > 1000 * test_times && seen.bent > 500 * test_times);
-    assert_true(seen.near > 5000 * test_times && seen.turned > 1000 * test_times);
-    assert_true(seen.pieces > 3000 * test_times && seen.volumes > 10 * test_times);
+    assert_true(seen.known > ROUNDS(1000) * test_times && seen.bent > ROUNDS(500) * test_times);
+    assert_true(seen.near > ROUNDS(5000) * test_times && seen.turned > ROUNDS(1000) * test_times);
+    assert_true(seen.pieces > ROUNDS(3000) * test_times && seen.volumes > ROUNDS(10) * test_times);
 }
 
 /* Two of every kind of primitive, turned, with a blend that the models know. */
@@ -233,7 +233,7 @@ static void blends_hold(void **state)
     static const csg_node_kind JOINS[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
                                           CSG_NODE_INTERSECTION};
     tally seen = {0};
-    for (uint64_t i = 0; i < 120 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(120) * test_times; i++) {
         csg_random random = {.state = seed = 33000 + test_first_seed + i};
         csg_node_id ids[2];
         mesh_case m;
@@ -254,9 +254,9 @@ static void blends_hold(void **state)
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.known > 5000 * test_times && seen.near > 30000 * test_times);
-    assert_true(seen.pieces > 20000 * test_times && seen.volumes > 80 * test_times);
-    assert_true(seen.turned > 10000 * test_times);
+    assert_true(seen.known > ROUNDS(5000) * test_times && seen.near > ROUNDS(30000) * test_times);
+    assert_true(seen.pieces > ROUNDS(20000) * test_times && seen.volumes > ROUNDS(80) * test_times);
+    assert_true(seen.turned > ROUNDS(10000) * test_times);
 }
 
 /* A rounded cylinder cut by a plane or by a cylinder that is flush with one of its faces, so
@@ -265,7 +265,7 @@ static void flush_solids_have_models(void **state)
 {
     tally seen = {0};
     has_fillets = false;
-    for (uint64_t i = 0; i < 20 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(20) * test_times; i++) {
         csg_random random = {.state = seed = 47000 + test_first_seed + i};
         double r = csg_random_uniform(&random, 0.3, 1), h = csg_random_uniform(&random, 0.3, 1),
                round = csg_random_uniform(&random, 0.1, 0.5);
@@ -280,7 +280,7 @@ static void flush_solids_have_models(void **state)
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.with_models > 2250 * test_times);
+    assert_true(seen.with_models > ROUNDS(2250) * test_times);
 }
 
 /* Figures turned about an axis or along an elbow, posed. */
@@ -288,7 +288,7 @@ static void warps_hold(void **state)
 {
     tally seen = {0};
     has_fillets = false;
-    for (uint64_t i = 0; i < 40 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++) {
         csg_random random = {.state = seed = 35000 + test_first_seed + i};
         double v[CSG_PRIMITIVE_MOST_PARAMETERS] = {0};
         csg_primitive_kind kind = i % 2 ? CSG_NODE_CIRCLE : CSG_NODE_RECTANGLE;
@@ -309,8 +309,8 @@ static void warps_hold(void **state)
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.known > 1500 * test_times && seen.near > 8000 * test_times);
-    assert_true(seen.turned > 3000 * test_times);
+    assert_true(seen.known > ROUNDS(1500) * test_times && seen.near > ROUNDS(8000) * test_times);
+    assert_true(seen.turned > ROUNDS(3000) * test_times);
 }
 
 /* ---- graphs ------------------------------------------------------------------------------------
@@ -492,7 +492,7 @@ static void try_solid(const csg_taylor *f, double half, graph_tally *seen)
 static void graphs_hold(void **state)
 {
     graph_tally seen = {0};
-    for (uint64_t i = 0; i < 500 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(500) * test_times; i++) {
         csg_random random = {.state = seed = 35000 + test_first_seed + i};
         double half = exp(csg_random_uniform(&random, -3, 3)), area, error;
         csg_taylor f = random_polynomial(&random, half);
@@ -506,10 +506,10 @@ static void graphs_hold(void **state)
             seen.faces++;
         }
     }
-    assert_true(seen.known > 300 * test_times && seen.tight > 250 * test_times);
-    assert_true(seen.faces > 300 * test_times && seen.narrow > 140 * test_times);
-    assert_true(seen.areas > 250 * test_times && seen.close > 250 * test_times &&
-                seen.divided > 300 * test_times);
+    assert_true(seen.known > ROUNDS(300) * test_times && seen.tight > ROUNDS(250) * test_times);
+    assert_true(seen.faces > ROUNDS(300) * test_times && seen.narrow > ROUNDS(140) * test_times);
+    assert_true(seen.areas > ROUNDS(250) * test_times && seen.close > ROUNDS(250) * test_times &&
+                seen.divided > ROUNDS(300) * test_times);
 }
 
 int main(int argc, char **argv)

@@ -180,7 +180,7 @@ static void try_scene(const mesh_case *m, csg_random *random, tally *seen)
 static void halves_hold(void **state)
 {
     tally seen = {0};
-    for (uint64_t i = 0; i < 60 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(60) * test_times; i++) {
         csg_random random = {.state = 7000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
@@ -195,9 +195,9 @@ static void halves_hold(void **state)
             try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.known > 2000 * test_times && seen.many > 200 * test_times);
-    assert_true(seen.inside > 20000 * test_times && seen.outside > 20000 * test_times);
-    assert_true(seen.strays > 5000 * test_times && seen.rooms > 5000 * test_times);
+    assert_true(seen.known > ROUNDS(2000) * test_times && seen.many > ROUNDS(200) * test_times);
+    assert_true(seen.inside > ROUNDS(20000) * test_times && seen.outside > ROUNDS(20000) * test_times);
+    assert_true(seen.strays > ROUNDS(5000) * test_times && seen.rooms > ROUNDS(5000) * test_times);
 }
 
 /* Boxes, cylinders and cones by their edges, flat ones too, joined sharply. */
@@ -205,7 +205,7 @@ static void creases_hold(void **state)
 {
     tally seen = {0};
     has_fillets = false;
-    for (uint64_t i = 0; i < 60 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(60) * test_times; i++) {
         csg_random random = {.state = 9000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
@@ -230,7 +230,7 @@ static void creases_hold(void **state)
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.many > 2000 * test_times && seen.rooms > 5000 * test_times);
+    assert_true(seen.many > ROUNDS(2000) * test_times && seen.rooms > ROUNDS(5000) * test_times);
 }
 
 /* In cubes whose centre is on a capsule's axis, where its gradient is a direction of rounding
@@ -240,7 +240,7 @@ static void capsules_hold_on_their_axes(void **state)
 {
     tally seen = {0};
     has_fillets = false;
-    for (uint64_t i = 0; i < 60 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(60) * test_times; i++) {
         csg_random random = {.state = 15000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
@@ -262,7 +262,7 @@ static void capsules_hold_on_their_axes(void **state)
         free(scratch);
         mesh_case_end(&m);
     }
-    assert_true(seen.inside > 2000 * test_times);
+    assert_true(seen.inside > ROUNDS(2000) * test_times);
 }
 
 /* ---- formulas ----------------------------------------------------------------------------------
@@ -301,7 +301,7 @@ static void check_bend(const mesh_case *m, csg_random *random, const double c[3]
 static void formulas_bend(void **state)
 {
     uint32_t known = 0;
-    for (uint64_t i = 0; i < 200 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(200) * test_times; i++) {
         csg_random random = {.state = 21000 + test_first_seed + i};
         csg_formula_step steps[TEST_MOST_STEPS];
         const csg_field_domain domain = {{{-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8}}, false, 100, true};
@@ -330,7 +330,7 @@ static void formulas_bend(void **state)
         free(scratch);
         mesh_case_end(&m);
     }
-    assert_true(known > 300 * test_times);
+    assert_true(known > ROUNDS(300) * test_times);
 }
 
 static void add_plane(csg_halves *h, csg_random *random)
@@ -427,7 +427,7 @@ static void sections_hold(void **state)
     enum { GRID = 60 };
     const double half = 0.7;
     int certain = 0;
-    for (uint64_t i = 0; i < 150 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(150) * test_times; i++) {
         csg_random random = {.state = 21000 + test_first_seed + i};
         csg_halves h;
         double moved[CSG_HALVES_MOST];

@@ -7,6 +7,7 @@
 #include "mesh/uncrossed.h"
 #include "shape/polyhedra/booleans.h"
 #include "shape/solid_support.h"
+#include "rounds.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,7 +77,7 @@ static void assert_is_solid(mesh_case *c, csg_random *random)
 static void test_random_joins(void **state)
 {
     (void)state;
-    enum { SCENES = 200 };
+    enum { SCENES = ROUNDS(200) };
     int own = 0;
     for (unsigned seed = 0; seed < SCENES; seed++) {
         mesh_case c;
@@ -192,7 +193,7 @@ static void test_too_many(void **state)
 static void test_random_mixtures(void **state)
 {
     (void)state;
-    enum { SCENES = 25 };
+    enum { SCENES = ROUNDS(25) };
     int own = 0, mixed = 0;
     for (unsigned seed = 0; seed < SCENES; seed++) {
         mesh_case c;
@@ -351,7 +352,7 @@ static void assert_color_of_operand(const csgm_mesh *mesh, int k, csg_random ran
 /* With vertices for each side of a border they are joined. */
 static void test_looks_side_by_side(void **state)
 {
-    enum { SCENES = 40, MOST = 5 };
+    enum { SCENES = ROUNDS(40), MOST = 5 };
     static const csg_node_kind KINDS[] = {CSG_NODE_UNION, CSG_NODE_INTERSECTION,
                                           CSG_NODE_DIFFERENCE, CSG_NODE_UNION};
     (void)state;

@@ -347,7 +347,7 @@ static csgm_scene *random_scene(uint64_t seed, csg_random *random)
 static void test_random_trees_are_contained(void **state)
 {
     uint64_t inside = 0;
-    for (uint64_t n = 0, seed = test_first_seed + 1000; n < 150 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 1000; n < ROUNDS(150) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box = csg_bounds_of_solid(scene);
@@ -372,7 +372,7 @@ static void test_random_trees_are_contained(void **state)
 static void test_nothing_is_beyond_the_exterior_box(void **state)
 {
     int found = 0, beyond = 0, rescued = 0;
-    for (uint64_t n = 0, seed = test_first_seed + 3001; n < 133 * test_times;
+    for (uint64_t n = 0, seed = test_first_seed + 3001; n < ROUNDS(133) * test_times;
          n++, seed += 3) { /* with rules */
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
@@ -398,7 +398,7 @@ static void test_nothing_is_beyond_the_exterior_box(void **state)
  * wrong by little show here. */
 static void test_surface_is_contained(void **state)
 {
-    for (uint64_t n = 0, seed = test_first_seed + 2000; n < 100 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 2000; n < ROUNDS(100) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         csg_box box = csg_box_grow(csg_bounds_of_solid(scene), 1e-12);
@@ -440,7 +440,7 @@ static void check_band(const csgm_scene *scene, csg_random *random, double delta
 
 static void test_band_is_exact(void **state)
 {
-    for (uint64_t n = 0, seed = test_first_seed + 3000; n < 100 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed + 3000; n < ROUNDS(100) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         check_band(scene, &random, 0);

@@ -16,6 +16,7 @@
 #include "scene/warp_kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
+#include "rounds.h"
 
 static csgm_context context;
 static csg_scene_builder builder;
@@ -326,7 +327,7 @@ static void slices_are_traced(void **state)
 /* Two saddles' worth of ways in one cell, and figures much smaller than a cell. */
 static void traces_close_at_random(void **state)
 {
-    for (int round = 0; round < 6; round++) {
+    for (int round = 0; round < ROUNDS(6); round++) {
         csg_node_id nodes[40];
         for (int k = 0; k < 40; k++)
             nodes[k] = moved(csg_random_uniform(&dice, -3, 3), csg_random_uniform(&dice, -3, 3),

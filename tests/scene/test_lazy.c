@@ -14,6 +14,7 @@
 #include "scene/formula/formula.h"
 #include "scene/lazy/lazy_private.h"
 #include "scene/primitives/kinds.h"
+#include "rounds.h"
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0, false};
 
@@ -298,7 +299,7 @@ static void check_laziness(const csgm_scene *scene, csg_random *random, csg_lazy
 
 static void test_laziness_changes_no_bit(void **state)
 {
-    enum { TREES = 300 };
+    enum { TREES = ROUNDS(300) };
     double parts[4][2] = {{0}}, filleted[4][2] = {{0}};
     unsigned trees = 0;
     for (uint64_t seed = 5000; seed < 5000 + TREES; seed++) {
@@ -342,7 +343,7 @@ static double check_exactness(const csgm_scene *scene, csg_random *random, doubl
 static void test_exact_scheme_is_exact(void **state)
 {
     double worst = 0;
-    for (uint64_t seed = 6000; seed < 6300; seed++) {
+    for (uint64_t seed = 6000; seed < 6000 + ROUNDS(300); seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         worst = fmax(worst, check_exactness(scene, &random, 0));
@@ -390,7 +391,7 @@ static csg_node_id rule_tree(csg_random *random, unsigned depth)
 
 static void test_rules_are_exact_too(void **state)
 {
-    enum { RULED = 200 };
+    enum { RULED = ROUNDS(200) };
     double parts[2] = {0}, worst = 0;
     for (uint64_t seed = 9000; seed < 9000 + RULED; seed++) {
         csg_random random = {seed};
@@ -444,7 +445,7 @@ static void test_steep_fields(void **state)
 
 static void test_fields_keep_their_constants(void **state)
 {
-    for (uint64_t seed = 7000; seed < 7100; seed++) {
+    for (uint64_t seed = 7000; seed < 7000 + ROUNDS(100); seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         evaluator e = evaluator_of(scene, true, CSG_LAZY_OWN_BOXES, 0);

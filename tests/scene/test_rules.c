@@ -14,12 +14,13 @@
 #include <string.h>
 
 #include "random_rule.h"
+#include "rounds.h"
 
 /* tools/soak has many more, of other seeds. */
 static int point_count = 400;
 static uint64_t seed_of_run = 0;
 
-enum { RULES = 200, MOST = 5 };
+enum { RULES = ROUNDS(200), MOST = 5 };
 
 typedef struct sample {
     csg_random *random;

@@ -77,7 +77,7 @@ static void test_unequal_scale(void **state)
 static void test_lipschitz(void **state)
 {
     double worst = 0;
-    for (uint64_t n = 0, seed = test_first_seed; n < 120 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < ROUNDS(120) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         double lambda = csg_scene_lipschitz(scene), waver = test_waver(scene);
@@ -119,7 +119,7 @@ static bool check_gradient(const csgm_scene *scene, csg_vec3 p)
 static void test_gradients(void **state)
 {
     int checked = 0;
-    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < ROUNDS(100) * test_times; seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         bool has_fillet = test_waver(scene) > 0; /* normals of operands count as constant */
@@ -137,7 +137,7 @@ static void test_distance_bound(void **state)
     enum { POINTS = 250 };
     static csg_vec3 points[POINTS];
     static double values[POINTS];
-    for (uint64_t n = 0, seed = test_first_seed; n < 60 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < ROUNDS(60) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         double waver = test_waver(scene);
@@ -187,7 +187,7 @@ static uint32_t primitive_count(const csgm_scene *scene)
 static void test_active_in_random_scenes(void **state)
 {
     uint64_t all = 0, active = 0;
-    for (uint64_t n = 0, seed = test_first_seed; n < 100 * test_times; n++, seed++) {
+    for (uint64_t n = 0, seed = test_first_seed; n < ROUNDS(100) * test_times; n++, seed++) {
         csg_random random;
         csgm_scene *scene = random_scene(seed, &random);
         for (int i = 0; i < 50; i++) {

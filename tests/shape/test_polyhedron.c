@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "shape/shape_kernel.h"
+#include "rounds.h"
 
 static void make(solid_case *c)
 {
@@ -270,7 +271,7 @@ static void test_packets(void **state)
         if (i % 4 == 2) /* ties, and shells that cross */
             solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 7);
         make(&c);
-        for (int k = 0; k < 60; k++)
+        for (int k = 0; k < ROUNDS(60); k++)
             check_packet(&c, &random);
         end(&c);
     }
@@ -361,7 +362,7 @@ static void test_cells(void **state)
             solid_add_fine_box(&c.triangles, csg_vec3_make(-0.9, -0.4, -0.3),
                                csg_vec3_make(0.3, 0.5, 0.45), 1 + i / 4);
         make(&c);
-        for (int k = 0; k < 25; k++)
+        for (int k = 0; k < ROUNDS(25); k++)
             check_cells(&c, &random);
         end(&c);
     }
@@ -384,7 +385,7 @@ static void test_cells_of_long_triangles(void **state)
             p->y = wave * sin(angle + 2 * p->z);
         }
         make(&c);
-        for (int k = 0; k < 400; k++)
+        for (int k = 0; k < ROUNDS(400); k++)
             check_cells(&c, &random);
         end(&c);
     }

@@ -10,6 +10,7 @@
 
 #include "shape/plane/region.h"
 #include "shape/shape_kernel.h"
+#include "rounds.h"
 
 static csg_memory memory;
 static csg_outline outline;
@@ -332,13 +333,13 @@ static void cells_have_what_matters_there(void **state)
         add_star(&outline, &dice, (csg_vec2){0, 0}, 0.1, 0.3, corners, true);
         add_star(&outline, &dice, (csg_vec2){1, 1}, 0.1, 0.9, 5 + corners / 2, false);
         make_region();
-        for (int i = 0; i < 40; i++)
+        for (int i = 0; i < ROUNDS(40); i++)
             checked += check_way_down(2);
     }
     make_text_like(3000);
-    for (int i = 0; i < 300; i++)
+    for (int i = 0; i < ROUNDS(300); i++)
         checked += check_way_down(20);
-    assert_true(checked > 15000);
+    assert_true(checked > ROUNDS(15000));
 }
 
 static void shapes_are_counted_and_named(void **state)

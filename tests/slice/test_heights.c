@@ -156,7 +156,7 @@ static void random_scenes(void **state)
 {
     enum { RAYS = 150 };
     size_t met = 0, bounded = 0;
-    for (uint64_t i = 0; i < 40 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++) {
         csg_random random = {.state = 7100 + test_first_seed + i};
         char what[40];
         mesh_case c;
@@ -186,7 +186,7 @@ static void random_scenes(void **state)
         }
         mesh_case_end(&c);
     }
-    assert_true(met > 1000 * test_times && bounded > 15 * test_times);
+    assert_true(met > ROUNDS(1000) * test_times && bounded > ROUNDS(15) * test_times);
 }
 
 int main(int argc, char **argv)

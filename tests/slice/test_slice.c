@@ -327,7 +327,7 @@ static size_t check_layer(const mesh_case *c, const csg_sliced_layer *layer, dou
 static void random_scenes(void **state)
 {
     size_t told = 0, contours = 0, points = 0;
-    for (uint64_t i = 0; i < 48 * test_times; i++) {
+    for (uint64_t i = 0; i < ROUNDS(48) * test_times; i++) {
         csg_random random = {.state = 2300 + test_first_seed + i};
         char what[40];
         mesh_case c;
@@ -354,8 +354,8 @@ static void random_scenes(void **state)
         }
         mesh_case_end(&c);
     }
-    assert_true(told > 20000 * test_times && contours > 200 * test_times &&
-                points > 5000 * test_times);
+    assert_true(told > ROUNDS(20000) * test_times && contours > ROUNDS(200) * test_times &&
+                points > ROUNDS(5000) * test_times);
 }
 
 /* ---- limits ------------------------------------------------------------------------------------
