@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * How many rounds of a random search a build makes. Sanitizers look for faults of memory and arithmetic, which the
- * first rounds have as well as the last, and take three to ten times as long: they get a quarter of the rounds, the
- * optimised build all of them.
+ * How many rounds of a random search a build makes. Sanitizers look for faults of memory and
+ * arithmetic, which the first rounds have as well as the last, and take three to ten times as long:
+ * they get a quarter of the rounds, the optimised build all of them.
  */
 #ifndef TEST_ROUNDS_H
 #define TEST_ROUNDS_H

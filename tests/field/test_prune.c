@@ -46,8 +46,9 @@ static void test_random_scenes(void **state)
         walk_through(&w, root, &random, 1, 1.5, what, &totals);
     }
     /* Enough of everything was seen for the checks to mean something. */
-    assert_true(totals.cells > 3000 && totals.outside > 300 && totals.inside > 100);
-    assert_true(totals.shortened > 400 && totals.in_band > 10000);
+    assert_true(totals.cells > ROUNDS(3000) && totals.outside > ROUNDS(300) &&
+                totals.inside > ROUNDS(100));
+    assert_true(totals.shortened > ROUNDS(400) && totals.in_band > ROUNDS(10000));
 }
 
 /* Outlines of many segments, extruded, turned about an axis, below warps: only those segments that
@@ -66,7 +67,8 @@ static void test_outlines(void **state)
         walk_through(&w, root, &random, 0.5, 0.8, what, &totals);
     }
     test_random_outlines = false;
-    assert_true(totals.cells > 2000 && totals.shortened > 300 && totals.in_band > 4000);
+    assert_true(totals.cells > ROUNDS(2000) && totals.shortened > ROUNDS(300) &&
+                totals.in_band > ROUNDS(4000));
 }
 
 /* Extrusions that an offset has made larger: beside their edges the distance to the figure matters
@@ -96,7 +98,8 @@ static void test_raised_extrusions(void **state)
         root = csg_build_offset(builder, csg_random_uniform(&random, 0.1, 0.2), root, NOWHERE);
         walk_through(&w, root, &random, 0.5, 0.3, what, &totals);
     }
-    assert_true(totals.cells > 2000 && totals.shortened > 300 && totals.in_band > 4000);
+    assert_true(totals.cells > ROUNDS(2000) && totals.shortened > ROUNDS(300) &&
+                totals.in_band > ROUNDS(4000));
 }
 
 /* Trees of fillets, whose values depend on gradients and may jump. */
@@ -117,7 +120,8 @@ static void test_random_fillet_scenes(void **state)
         walk_through(&w, root, &random, 1, 1.5, what, &totals);
     }
     test_random_fillets = test_random_shapes = test_random_curves = test_random_rules = false;
-    assert_true(totals.cells > 3000 && totals.shortened > 400 && totals.in_band > 10000);
+    assert_true(totals.cells > ROUNDS(3000) && totals.shortened > ROUNDS(400) &&
+                totals.in_band > ROUNDS(10000));
 }
 
 /* A cross of two bars, or two blocks with a gap between them; a ball in the middle of the first,

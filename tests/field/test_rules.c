@@ -22,8 +22,8 @@ static const csg_blend_kind kinds[] = {
 };
 static const char *const names[] = {
 #define CSG_RULE(NAME, name, space, fold, interval, demand, lipschitz, equal, doc) #name,
-#include "scene/operators/operators.def"
 #include "rounds.h"
+#include "scene/operators/operators.def"
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

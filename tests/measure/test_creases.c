@@ -151,7 +151,8 @@ static void boxes_hold(void **state)
     tally seen = {0};
     for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++)
         try_box(test_first_seed + i, &seen);
-    assert_true(seen.pieces > ROUNDS(1000) * test_times && seen.values > ROUNDS(60000) * test_times);
+    assert_true(seen.pieces > ROUNDS(1000) * test_times &&
+                seen.values > ROUNDS(60000) * test_times);
     assert_true(seen.gradients > ROUNDS(50000) * test_times);
     assert_true(seen.volumes > ROUNDS(100) * test_times && seen.areas > ROUNDS(25) * test_times);
 }
@@ -184,7 +185,8 @@ static void joins_hold(void **state)
         try_solid(&m, solid, &random, blend.kind != CSG_BLEND_FILLET, &seen);
         mesh_case_end(&m);
     }
-    assert_true(seen.pieces > ROUNDS(1000) * test_times && seen.values > ROUNDS(60000) * test_times);
+    assert_true(seen.pieces > ROUNDS(1000) * test_times &&
+                seen.values > ROUNDS(60000) * test_times);
     assert_true(seen.gradients > ROUNDS(50000) * test_times);
     assert_true(seen.volumes > ROUNDS(130) * test_times && seen.areas > ROUNDS(30) * test_times);
 }

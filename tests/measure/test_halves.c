@@ -196,7 +196,8 @@ static void halves_hold(void **state)
         mesh_case_end(&m);
     }
     assert_true(seen.known > ROUNDS(2000) * test_times && seen.many > ROUNDS(200) * test_times);
-    assert_true(seen.inside > ROUNDS(20000) * test_times && seen.outside > ROUNDS(20000) * test_times);
+    assert_true(seen.inside > ROUNDS(20000) * test_times &&
+                seen.outside > ROUNDS(20000) * test_times);
     assert_true(seen.strays > ROUNDS(5000) * test_times && seen.rooms > ROUNDS(5000) * test_times);
 }
 
@@ -461,7 +462,7 @@ static void sections_hold(void **state)
             fail_msg("an area of %g, but %g .. %g is promised", area, least, most);
         certain += least > 0;
     }
-    assert_true(certain > 50);
+    assert_true(certain > ROUNDS(50));
 }
 
 int main(int argc, char **argv)

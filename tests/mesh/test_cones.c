@@ -13,7 +13,6 @@
 #include "scene/random_formula.h"
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"
-#include "rounds.h"
 
 static uint32_t scene_count = ROUNDS(24), range_count = 0, step_count = 0;
 

@@ -5,9 +5,9 @@
  */
 #include "mesh/own_support.h"
 #include "mesh/uncrossed.h"
+#include "rounds.h"
 #include "shape/polyhedra/booleans.h"
 #include "shape/solid_support.h"
-#include "rounds.h"
 
 #include <math.h>
 #include <stdlib.h>

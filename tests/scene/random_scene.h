@@ -7,8 +7,8 @@
 #define TEST_RANDOM_SCENE_H
 
 #include "base/random.h"
-#include "scene/tree/build.h"
 #include "rounds.h"
+#include "scene/tree/build.h"
 
 /* A scene of about that many primitives (>= 1); CSG_NODE_NONE when the builder failed. */
 csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, unsigned primitives);

@@ -365,7 +365,7 @@ static void test_random_trees_are_contained(void **state)
         csg_reference_room_end(&room, scene);
         csg_scene_destroy(scene);
     }
-    assert_true(inside > 5000);
+    assert_true(inside > ROUNDS(5000));
 }
 
 /* Found from what leaves are far away, soft ones and rules too: nothing is solid beyond it. */
@@ -391,7 +391,7 @@ static void test_nothing_is_beyond_the_exterior_box(void **state)
         rescued += is_found && !csg_box_is_finite(all) && !csg_box_is_empty(all);
         csg_scene_destroy(scene);
     }
-    assert_true(found > 60 && beyond > 10000 && rescued > 15);
+    assert_true(found > ROUNDS(60) && beyond > ROUNDS(10000) && rescued > ROUNDS(15));
 }
 
 /* Walking outwards from solid points must not leave the box before the solid: boxes that are

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "failing.h"
+#include "rounds.h"
 #include "scene/outlines/flatten.h"
 #include "scene/outlines/unite.h"
 #include "scene/primitives/kinds.h"
@@ -16,7 +17,6 @@
 #include "scene/warp_kinds.h"
 #include "shape/plane/polygons.h"
 #include "shape/plane/region.h"
-#include "rounds.h"
 
 static csgm_context context;
 static csg_scene_builder builder;

@@ -11,10 +11,10 @@
 
 #include "random_blend.h"
 #include "random_scene.h"
+#include "rounds.h"
 #include "scene/formula/formula.h"
 #include "scene/lazy/lazy_private.h"
 #include "scene/primitives/kinds.h"
-#include "rounds.h"
 
 static const csg_blend sharp = {CSG_BLEND_SHARP, 0, false};
 

@@ -128,7 +128,7 @@ static void test_gradients(void **state)
             checked += check_gradient(scene, test_point(&random, 1.5));
         csg_scene_destroy(scene);
     }
-    assert_true(checked > 3900);
+    assert_true(checked > ROUNDS(3900));
 }
 
 /* Sampled points of the other sign are never nearer than |f|. */

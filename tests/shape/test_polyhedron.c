@@ -7,8 +7,8 @@
 #include <limits.h>
 #include <string.h>
 
-#include "shape/shape_kernel.h"
 #include "rounds.h"
+#include "shape/shape_kernel.h"
 
 static void make(solid_case *c)
 {

@@ -8,9 +8,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "rounds.h"
 #include "shape/plane/region.h"
 #include "shape/shape_kernel.h"
-#include "rounds.h"
 
 static csg_memory memory;
 static csg_outline outline;
