@@ -412,26 +412,27 @@ void csg_feature_room_init(csg_feature_room *room)
 {
     memset(&room->edges, 0, sizeof room->edges);
     memset(&room->around, 0, sizeof room->around);
-    room->features = NULL;
     csg_arena_init(&room->lists, NULL);
-    room->blocks = NULL;
-    room->capacity = room->block_capacity = 0;
     csg_feature_room_empty(room);
 }
 
 void csg_feature_room_empty(csg_feature_room *room)
 {
+    csg_memory *memory = room->lists.memory; /* NULL: it has never had any */
+    if (memory) {
+        csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
+        csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
+    }
     csg_arena_reset(&room->lists);
+    room->features = NULL;
+    room->blocks = NULL;
+    room->capacity = room->block_capacity = 0;
     room->count = room->block_count = 0;
     room->smooth = room->fading = room->evaluations = 0;
 }
 
-void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
+void csg_feature_room_release(csg_feature_room *room)
 {
     csg_feature_around_release(&room->around);
-    csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
-    csg_arena_reset(&room->lists);
-    csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
-    room->features = NULL;
-    room->blocks = NULL;
+    csg_feature_room_empty(room);
 }

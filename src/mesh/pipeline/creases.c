@@ -38,15 +38,17 @@ static bool find_item(void *user, uint32_t worker_index, size_t item)
     return true;
 }
 
-static void empty_rooms(csg_mesh_creases *c)
+static bool empty_rooms(csg_mesh_creases *c)
 {
+    bool done = true;
     for (uint32_t i = 0; i < c->workers->count; i++) {
         csg_feature_room *room = c->workers->each[i].features;
         c->store.smooth += room->smooth;
         c->store.fading += room->fading;
         c->workers->each[i].point_evaluations += room->evaluations;
-        csg_feature_room_empty(room);
+        done = csg_feature_store_take_lists(&c->store, room) && done;
     }
+    return done;
 }
 
 /* Joined in the order of the items, whoever did them. */
@@ -58,8 +60,7 @@ static bool collect(csg_mesh_creases *c, size_t items)
         done = csg_feature_store_add(&c->store, c->workers->each[found->worker].features,
                                      found->first, found->count);
     }
-    empty_rooms(c);
-    return done;
+    return empty_rooms(c) && done;
 }
 
 /* Two triangles a feature more than without; in a cell with a joined face all loops are features,
