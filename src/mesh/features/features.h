@@ -208,6 +208,7 @@ typedef struct csg_feature_room {
     uint32_t which[CSG_FEATURE_SEGMENTS];
     csg_feature *features; /* found since it was emptied */
     csg_arena lists;       /* theirs */
+    csg_arena along;       /* of the blocks at hand */
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
     uint64_t smooth, fading, evaluations;
@@ -218,8 +219,9 @@ void csg_feature_room_init(csg_feature_room *room);
 /* Forgets the features and gives their memory back; what it has counted goes back to 0. */
 void csg_feature_room_empty(csg_feature_room *room);
 void csg_feature_room_release(csg_feature_room *room);
-/* Adds the block's features to the room's. False: out of memory. */
-bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,
+/* Adds the block's features to the room's; its roots may be kept (csg_marching_keeps_roots) until
+ * room->along is reset. False: out of memory. */
+bool csg_feature_find(const csg_marching *marching, csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats);
 
 /* ---- the store ------------------------------------------------------------------------------- */

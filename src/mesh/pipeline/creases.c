@@ -119,6 +119,8 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
     CSG_ZONE(c->watch->context, "features: find");
     if (!c->sharp)
         return CSGM_OK;
+    for (uint32_t i = 0; i < c->workers->count; i++) /* of blocks that were at hand before */
+        csg_arena_reset(&c->workers->each[i].features->along);
     c->blocks = blocks;
     if (c->store.index.slots) { /* all were found before */
         add_known(c);
