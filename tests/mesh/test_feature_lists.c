@@ -91,31 +91,35 @@ static void test_into_the_store(void **state)
     csg_memory memory;
     csg_memory_init(&memory, NULL, 0);
     csg_feature_store store = {.memory = &memory};
-    csg_feature *features = NULL;
-    size_t count = 0, capacity = 0;
-    csg_arena lists;
-    csg_arena_init(&lists, &memory);
-    csg_random random = {175};
-    csg_feature_whole whole;
-    for (int i = 0; i < MANY; i++) {
-        make_random(&random, &whole);
-        assert_true(csg_feature_append(&features, &count, &capacity, &lists, &whole.feature));
-    }
-    csg_feature_block blocks[2] = {{.first = 0, .count = MANY / 2},
-                                   {.first = MANY / 2, .count = MANY - MANY / 2}};
+    static csg_feature_whole kept[MANY];
     csg_feature_room *room = csg_memory_alloc(&memory, sizeof *room);
     assert_non_null(room);
     csg_feature_room_init(room);
-    room->features = features;
-    room->blocks = blocks;
-    assert_true(csg_feature_store_add(&store, room, 0, 2));
-    assert_true(csg_feature_store_add(&store, room, 1, 1)); /* the second block again */
-    assert_int_equal(store.count, MANY + MANY - MANY / 2);
-    assert_int_equal(store.blocks[2].first, MANY);
+    csg_random random = {175};
+    for (int slab = 0; slab < 2; slab++) { /* an empty room can be filled again */
+        room->lists.memory = &memory;
+        for (int i = slab * MANY / 2; i < (slab + 1) * MANY / 2; i++) {
+            csg_feature_whole whole;
+            make_random(&random, &whole);
+            csg_feature_keep(&kept[i], &whole.feature);
+            assert_true(csg_feature_append(&room->features, &room->count, &room->capacity,
+                                           &room->lists, &whole.feature));
+        }
+        assert_true(csg_memory_reserve(&memory, (void **)&room->blocks, &room->block_capacity, 2,
+                                       sizeof *room->blocks));
+        uint32_t count = (uint32_t)room->count, half = count / 2;
+        room->blocks[0] = (csg_feature_block){.first = 0, .count = half};
+        room->blocks[1] = (csg_feature_block){.first = half, .count = count - half};
+        assert_true(csg_feature_store_add(&store, room, 0, 1));
+        assert_true(csg_feature_store_add(&store, room, 1, 1));
+        assert_true(csg_feature_store_take_lists(&store, room));
+        assert_int_equal(room->count, 0);
+    }
+    size_t count = store.count;
+    assert_int_equal(count, MANY);
+    assert_int_equal(store.blocks[2].first, MANY / 2);
     for (size_t i = 0; i < count; i++)
-        assert_same(&store.features[i], &features[i]);
-    for (size_t i = 0; i < blocks[1].count; i++)
-        assert_same(&store.features[MANY + i], &features[blocks[1].first + i]);
+        assert_same(&store.features[i], &kept[i].feature);
 
     size_t bytes = csg_feature_lists_bytes(store.features, store.count), at = 0;
     uint8_t *packed = csg_memory_alloc(&memory, bytes);
@@ -125,15 +129,13 @@ static void test_into_the_store(void **state)
         at += csg_feature_list_bytes(&store.features[i]);
     }
     assert_int_equal(at, bytes);
-    csg_arena_reset(&store.lists);
     csg_features_lay_out(store.features, store.count, packed);
     for (size_t i = 0; i < count; i++)
-        assert_same(&store.features[i], &features[i]);
+        assert_same(&store.features[i], &kept[i].feature);
 
     csg_memory_release(&memory, packed, bytes);
     csg_feature_store_release(&store);
-    csg_arena_reset(&lists);
-    csg_memory_release(&memory, features, capacity * sizeof *features);
+    csg_feature_room_release(room);
     csg_memory_release(&memory, room, sizeof *room);
     assert_int_equal(atomic_load(&memory.used_bytes), 0);
 }

@@ -576,7 +576,7 @@ static bool keep_formulas(compiler *c)
     field->tape.steps = keep(&field->arena, c->steps, c->step_count * sizeof *c->steps);
     field->tape.formulas = keep(&field->arena, c->formulas, c->formula_count * sizeof *c->formulas);
     field->tape.warps = keep(&field->arena, c->warps, c->warp_count * sizeof *c->warps);
-    field->tape.shapes = c->scene->shapes;
+    field->tape.shapes = c->scene->shape_count ? c->scene->shapes : NULL; /* NULL: none */
     if (field->has_materials) {
         field->materials = keep(&field->arena, c->materials, c->color_count * sizeof *c->materials);
         if (!field->materials)

@@ -29,6 +29,8 @@ typedef struct csg_block {
     uint32_t node_count;
     const csg_tape_node *nodes;  /* of the pruned tape */
     const csg_block_part *parts; /* eight, or NULL: the block has one tape */
+    const float *along; /* of vertices, in the order of csg_marching_roots: their places along their
+                           edges' axes; NULL: not known, as after sampling */
     uint32_t vertex_count, triangle_count;
     uint32_t first_vertex;
     uint64_t first_triangle;

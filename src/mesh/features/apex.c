@@ -191,7 +191,7 @@ static void sample_sheets(const csg_apex_walk *walks, int count, double off, boo
         a->lost |= f[i] != f[i];
         bool still = fabs((double)f[i]) <= band && is_still(p, a, sheet[i], plane.g);
         fresh[i] = still ? plane : a->planes[sheet[i]];
-        if (!still && p->creased && f[i] == f[i] &&
+        if (!still && !a->lost && p->creased &&
             may_be_around(probe, a, csg_vec3_make((double)x[i], (double)y[i], (double)z[i]),
                           fmin(fabs((double)f[i]), band), off))
             still = look_around(p, a, sheet[i], off, probe, &fresh[i]);

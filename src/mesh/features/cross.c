@@ -12,7 +12,6 @@
 /* As a feature was in the last round: apexes beyond its sides are others' business. */
 typedef struct csg_cross_state {
     float at[3];
-    uint8_t triangle[CSG_FEATURE_MOST_SIDES][3];
     bool known;
     bool changed; /* since the round before */
     uint8_t moves;
@@ -23,6 +22,25 @@ typedef struct csg_cross_state {
 
 enum { CHANGED = 1, AWAKE = 2, CROSSED = 4 }; /* bits of a block */
 
+static size_t triangle_bytes(const csg_feature *f)
+{
+    return f->side_count * sizeof f->triangle[0];
+}
+
+/* Where those of each block begin in cross->triangles, and where the last end. */
+static void find_starts(csg_feature_cross *cross)
+{
+    const csg_feature_store *store = cross->near.store;
+    size_t at = 0;
+    for (size_t b = 0; b < store->block_count; b++) {
+        const csg_feature_block *block = &store->blocks[b];
+        cross->starts[b] = at;
+        for (uint32_t i = block->first; i < block->first + block->count; i++)
+            at += triangle_bytes(&store->features[i]);
+    }
+    cross->starts[store->block_count] = at;
+}
+
 bool csg_feature_cross_begin(csg_feature_cross *cross)
 {
     csg_near *near = &cross->near;
@@ -30,7 +48,12 @@ bool csg_feature_cross_begin(csg_feature_cross *cross)
     near->boxes = csg_memory_alloc(near->memory, count * sizeof *near->boxes);
     cross->states = csg_memory_alloc(near->memory, count * sizeof(cross_state));
     cross->blocks = csg_memory_alloc(near->memory, blocks);
-    if (!near->boxes || !cross->states || !cross->blocks)
+    cross->starts = csg_memory_alloc(near->memory, blocks * sizeof *cross->starts);
+    if (!near->boxes || !cross->states || !cross->blocks || !cross->starts)
+        return false;
+    find_starts(cross);
+    cross->triangles = csg_memory_alloc(near->memory, cross->starts[blocks - 1] + 1);
+    if (!cross->triangles)
         return false;
     memset(cross->states, 0, count * sizeof(cross_state));
     memset(cross->blocks, 0, blocks);
@@ -45,7 +68,11 @@ void csg_feature_cross_end(csg_feature_cross *cross)
         csg_near_room_release(&cross->rooms[i], near->memory);
     csg_memory_release(near->memory, near->boxes, count * sizeof *near->boxes);
     csg_memory_release(near->memory, cross->states, count * sizeof(cross_state));
-    csg_memory_release(near->memory, cross->blocks, near->store->block_count + 1);
+    size_t blocks = near->store->block_count + 1;
+    if (cross->triangles)
+        csg_memory_release(near->memory, cross->triangles, cross->starts[blocks - 1] + 1);
+    csg_memory_release(near->memory, cross->starts, blocks * sizeof *cross->starts);
+    csg_memory_release(near->memory, cross->blocks, blocks);
 }
 
 /* ---- looking -----------------------------------------------------------------------------------
@@ -54,16 +81,18 @@ void csg_feature_cross_end(csg_feature_cross *cross)
 void csg_feature_cross_look(csg_feature_cross *cross, size_t index)
 {
     const csg_feature_block *block = &cross->near.store->blocks[index];
+    uint8_t *before = cross->triangles + cross->starts[index];
     bool changed = false;
     for (uint32_t i = block->first; i < block->first + block->count; i++) {
         const csg_feature *f = &cross->near.store->features[i];
         cross_state *state = &cross->states[i];
-        size_t bytes = f->side_count * sizeof f->triangle[0];
-        state->changed = !state->known || memcmp(state->triangle, f->triangle, bytes) != 0 ||
+        size_t bytes = triangle_bytes(f);
+        state->changed = !state->known || memcmp(before, f->triangle, bytes) != 0 ||
                          state->moves != f->moves || memcmp(state->at, f->at, sizeof f->at) != 0;
         changed = changed || state->changed;
         memcpy(state->at, f->at, sizeof f->at);
-        memcpy(state->triangle, f->triangle, bytes);
+        memcpy(before, f->triangle, bytes);
+        before += bytes;
         state->known = true;
         state->waits = false;
         state->moves = f->moves;

@@ -15,6 +15,8 @@ typedef struct csg_feature_cross {
     csg_near_room *rooms; /* one per worker, the caller's */
     uint32_t room_count;
     struct csg_cross_state *states; /* one a feature */
+    uint8_t *triangles;             /* of all features, in the last round */
+    size_t *starts;                 /* of each block in these, and the end of the last */
     uint8_t *blocks;                /* what is known of each: a test changes its block's alone */
     uint32_t search;                /* number of the one that mends */
     bool has_changed;               /* something, in that */

@@ -125,9 +125,10 @@ typedef struct csg_feature_block {
 typedef struct csg_feature_store {
     csg_memory *memory;
     csg_feature *features;
-    csg_arena lists; /* theirs */
+    csg_arena lists;  /* theirs, */
+    csg_arena *taken; /* and those that came with the features of rooms */
     csg_feature_block *blocks;
-    size_t count, capacity, block_count, block_capacity;
+    size_t count, capacity, block_count, block_capacity, taken_count, taken_capacity;
     csg_table index; /* of the blocks; no slots before it is made */
     csg_feature_moved *moves;
     size_t move_count, move_capacity;
@@ -207,6 +208,7 @@ typedef struct csg_feature_room {
     uint32_t which[CSG_FEATURE_SEGMENTS];
     csg_feature *features; /* found since it was emptied */
     csg_arena lists;       /* theirs */
+    csg_arena along;       /* of the blocks at hand */
     csg_feature_block *blocks;
     size_t count, capacity, block_count, block_capacity;
     uint64_t smooth, fading, evaluations;
@@ -214,17 +216,23 @@ typedef struct csg_feature_room {
 } csg_feature_room;
 
 void csg_feature_room_init(csg_feature_room *room);
-/* Forgets the features; what it has counted goes back to 0. */
+/* Forgets the features and gives their memory back; what it has counted goes back to 0. */
 void csg_feature_room_empty(csg_feature_room *room);
-void csg_feature_room_release(csg_feature_room *room, csg_memory *memory);
-/* Adds the block's features to the room's. False: out of memory. */
-bool csg_feature_find(const csg_marching *marching, const csg_block *block, csg_feature_room *room,
+void csg_feature_room_release(csg_feature_room *room);
+/* Adds the block's features to the room's; its roots may be kept (csg_marching_keeps_roots) until
+ * room->along is reset. False: out of memory. */
+bool csg_feature_find(const csg_marching *marching, csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats);
 
 /* ---- the store ------------------------------------------------------------------------------- */
 
+/* Adds blocks of a room with their features, whose lists stay the room's until the store takes
+ * them. False: out of memory. */
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count);
+/* The lists of all features of a room are the store's from now on, and the room is empty. False:
+ * out of memory, lists are gone. */
+bool csg_feature_store_take_lists(csg_feature_store *store, csg_feature_room *room);
 /* The lists of the features from `first` on, one behind the other, *bytes of them: of csg_memory,
  * the caller's. NULL: out of memory, or there are none. */
 void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes);

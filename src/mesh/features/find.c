@@ -375,16 +375,28 @@ static bool end_block(csg_feature_room *room, csg_memory *memory, const csg_bloc
     return true;
 }
 
-static bool find_in_block(csg_feature_room *room, csg_feature_probe *probe, csg_memory *memory)
+/* False: out of memory. */
+static bool keep_roots(csg_feature_room *room, csg_block *block)
+{
+    float *along = csg_arena_alloc(&room->along, room->slots.count * sizeof *along);
+    if (along)
+        csg_marching_keep_roots(&room->slots, along);
+    block->along = along;
+    return along;
+}
+
+static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_probe *probe,
+                          csg_memory *memory)
 {
     const csg_marching *m = probe->marching;
-    const csg_block *block = probe->block;
     bool possible = csg_feature_find_possible(probe, room->possible);
     bool has_pairs = csg_feature_has_pairs(block);
     if (!possible && !has_pairs)
         return true;
     probe->evaluations += csg_marching_roots(m, block, &room->edges, &room->slots, probe->scratch,
                                              probe->scratch_floats);
+    if (csg_marching_keeps_roots(m) && !keep_roots(room, block))
+        return false;
     take_gradients(room, probe);
     /* before gradients are corrected: that depends on the block, this must not */
     room->any_joined = has_pairs && csg_feature_pair(room, probe);
@@ -396,13 +408,13 @@ static bool find_in_block(csg_feature_room *room, csg_feature_probe *probe, csg_
            end_block(room, memory, block, before);
 }
 
-bool csg_feature_find(const csg_marching *m, const csg_block *block, csg_feature_room *room,
+bool csg_feature_find(const csg_marching *m, csg_block *block, csg_feature_room *room,
                       csg_memory *memory, float *scratch, size_t scratch_floats)
 {
     csg_feature_probe probe =
         csg_feature_probe_of(m, block, &room->around, memory, scratch, scratch_floats);
-    room->lists.memory = memory;
-    bool done = find_in_block(room, &probe, memory);
+    room->lists.memory = room->along.memory = memory;
+    bool done = find_in_block(room, block, &probe, memory);
     room->evaluations += probe.evaluations;
     return done;
 }
@@ -412,26 +424,29 @@ void csg_feature_room_init(csg_feature_room *room)
 {
     memset(&room->edges, 0, sizeof room->edges);
     memset(&room->around, 0, sizeof room->around);
-    room->features = NULL;
     csg_arena_init(&room->lists, NULL);
-    room->blocks = NULL;
-    room->capacity = room->block_capacity = 0;
+    csg_arena_init(&room->along, NULL);
     csg_feature_room_empty(room);
 }
 
 void csg_feature_room_empty(csg_feature_room *room)
 {
+    csg_memory *memory = room->lists.memory; /* NULL: it has never had any */
+    if (memory) {
+        csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
+        csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
+    }
     csg_arena_reset(&room->lists);
+    room->features = NULL;
+    room->blocks = NULL;
+    room->capacity = room->block_capacity = 0;
     room->count = room->block_count = 0;
     room->smooth = room->fading = room->evaluations = 0;
 }
 
-void csg_feature_room_release(csg_feature_room *room, csg_memory *memory)
+void csg_feature_room_release(csg_feature_room *room)
 {
     csg_feature_around_release(&room->around);
-    csg_memory_release(memory, room->features, room->capacity * sizeof(csg_feature));
-    csg_arena_reset(&room->lists);
-    csg_memory_release(memory, room->blocks, room->block_capacity * sizeof(csg_feature_block));
-    room->features = NULL;
-    room->blocks = NULL;
+    csg_arena_reset(&room->along);
+    csg_feature_room_empty(room);
 }

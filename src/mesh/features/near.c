@@ -428,6 +428,20 @@ bool csg_near_collect(const csg_near *near, csg_near_room *room, size_t index)
 /* ---- smooth polygons ---------------------------------------------------------------------------
  */
 
+/* The first feature of a block that is in this cell or a later one. */
+static uint32_t first_from(const csg_feature_store *store, const csg_feature_block *block,
+                           uint32_t cell)
+{
+    uint32_t low = block->first, high = block->first + block->count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        bool is_before = store->features[middle].cell < cell;
+        low = is_before ? middle + 1 : low;
+        high = is_before ? high : middle;
+    }
+    return low;
+}
+
 /* The polygons of a cell that are features, a bit each; its pattern, 0 where there is none. */
 static unsigned loops_known(const csg_feature_store *store, const csg_cell_tables *tables,
                             const uint32_t cell[3], unsigned *pattern)
@@ -437,13 +451,15 @@ static unsigned loops_known(const csg_feature_store *store, const csg_cell_table
     const csg_feature_block *block = csg_feature_store_find(store, at);
     uint32_t here = cell[0] % E + (cell[1] % E + cell[2] % E * E) * E;
     *pattern = 0;
-    for (uint32_t i = block ? block->first : 0; block && i < block->first + block->count; i++)
-        if (store->features[i].cell == here) {
-            *pattern = store->features[i].pattern;
-            known |= 1u << store->features[i].loop;
-            if (store->features[i].joined) /* all of them are */
-                known = (1u << tables->loop_count[*pattern]) - 1;
-        }
+    if (!block)
+        return 0;
+    uint32_t i = first_from(store, block, here), end = block->first + block->count;
+    for (; i < end && store->features[i].cell == here; i++) {
+        *pattern = store->features[i].pattern;
+        known |= 1u << store->features[i].loop;
+        if (store->features[i].joined) /* all of them are */
+            known = (1u << tables->loop_count[*pattern]) - 1;
+    }
     return known;
 }
 

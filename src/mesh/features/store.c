@@ -19,20 +19,6 @@ static bool reserve(csg_feature_store *store, size_t features, size_t blocks)
                               store->count + features, sizeof(csg_feature));
 }
 
-/* Behind those of the store; their lists in one piece. False: out of memory. */
-static bool copy_features(csg_feature_store *store, const csg_feature *from, size_t count)
-{
-    store->lists.memory = store->memory;
-    uint8_t *lists = csg_arena_alloc(&store->lists, csg_feature_lists_bytes(from, count));
-    for (size_t i = 0; lists && i < count; i++) {
-        csg_feature *to = &store->features[store->count + i];
-        to->side = (void *)lists;
-        csg_feature_copy(to, &from[i]);
-        lists += csg_feature_list_bytes(to);
-    }
-    return lists != NULL;
-}
-
 bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *room, size_t first,
                            size_t count)
 {
@@ -43,8 +29,8 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
     size_t features = blocks[count - 1].first + blocks[count - 1].count - from;
     if (!reserve(store, features, count))
         return false;
-    if (!copy_features(store, room->features + from, features))
-        return false;
+    memcpy(store->features + store->count, room->features + from,
+           features * sizeof *store->features);
     for (size_t i = 0; i < count; i++) {
         csg_feature_block entry = blocks[i];
         entry.first = (uint32_t)(store->count + entry.first - from);
@@ -52,6 +38,19 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
     }
     store->count += features;
     return true;
+}
+
+bool csg_feature_store_take_lists(csg_feature_store *store, csg_feature_room *room)
+{
+    store->lists.memory = store->memory;
+    bool taken = csg_memory_reserve(store->memory, (void **)&store->taken, &store->taken_capacity,
+                                    store->taken_count + 1, sizeof *store->taken);
+    if (taken) {
+        store->taken[store->taken_count++] = room->lists;
+        csg_arena_init(&room->lists, store->memory);
+    }
+    csg_feature_room_empty(room);
+    return taken;
 }
 
 void *csg_feature_store_pack(const csg_feature_store *store, size_t first, size_t *bytes)
@@ -116,6 +115,9 @@ void csg_feature_store_release(csg_feature_store *store)
         return;
     csg_memory_release(store->memory, store->features, store->capacity * sizeof(csg_feature));
     csg_arena_reset(&store->lists);
+    for (size_t i = 0; i < store->taken_count; i++)
+        csg_arena_reset(&store->taken[i]);
+    csg_memory_release(store->memory, store->taken, store->taken_capacity * sizeof *store->taken);
     csg_memory_release(store->memory, store->blocks,
                        store->block_capacity * sizeof(csg_feature_block));
     csg_table_release(&store->index);

@@ -90,9 +90,9 @@ static part_range range_of_part(unsigned octant)
     return (part_range){columns & lines, layer, layer + P};
 }
 
-/* Lists crossed edges within a range, in the order of their ranks. */
+/* Lists crossed edges within a range, in the order of their ranks, and their slots. */
 static void collect_edges(const csg_block *block, const block_lines *lines, part_range range,
-                          csg_edges *e)
+                          csg_edges *e, uint16_t *slots)
 {
     uint32_t n = 0;
     for (int axis = 0; axis < 3; axis++)
@@ -108,6 +108,7 @@ static void collect_edges(const csg_block *block, const block_lines *lines, part
                 e->dz[n] = axis == 2 ? lines->step[2][k] : 0;
                 e->a_inside[n] = block->inside[k][j] >> i & 1;
                 e->rank[n] = (uint16_t)(block->rank[axis][k] + rank_in_word(word, bit));
+                slots[n] = (uint16_t)(axis * CSG_BLOCK_POINTS + (k * N + j) * N + i);
             }
         }
     e->count = n;
@@ -195,9 +196,20 @@ void csg_marching_gradients(const csg_marching *m, const csg_tape *tape, const f
         m->kernel->gradients(tape, x, y, z, count, out[0], out[1], out[2], scratch, scratch_floats);
 }
 
-/* Roots, normals, colours and materials of the collected edges. */
-static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_marching_room *room,
-                              const csg_marching_output *out, float *scratch, size_t scratch_floats)
+/* The places of the collected edges' vertices, which are known. */
+static void take_places(csg_marching_room *room)
+{
+    csg_edges *e = &room->edges;
+    for (uint32_t i = 0; i < e->count; i++) {
+        const float *at = room->slots.at[room->slots.slot[i]];
+        e->x[i] = at[0], e->y[i] = at[1], e->z[i] = at[2];
+    }
+}
+
+/* Roots (unless room->slots has them), normals, colours and materials of the collected edges. */
+static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, bool are_known,
+                              csg_marching_room *room, const csg_marching_output *out,
+                              float *scratch, size_t scratch_floats)
 {
     csg_edges *e = &room->edges;
     float *channels[4] = {room->channels[0], room->channels[1], room->channels[2],
@@ -205,7 +217,11 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, csg_m
     if (!e->count)
         return 0;
     e->end_distance = m->end_distance;
-    uint64_t evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
+    uint64_t evaluations = 0;
+    if (are_known)
+        take_places(room);
+    else
+        evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     if (out->normals) {
         csg_marching_gradients(m, tape, e->x, e->y, e->z, e->count, channels, scratch,
@@ -225,11 +241,15 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
 {
     csg_tape tape = m->field->tape;
     block_lines lines = lines_of(m->lattice, block);
+    uint16_t *slots = room->slots.slot;
+    bool are_known = block->along;
+    if (are_known)
+        csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
     if (!block->parts) {
         tape.nodes = block->nodes;
         tape.count = block->node_count;
-        collect_edges(block, &lines, (part_range){~(uint64_t)0, 0, E}, &room->edges);
-        return make_vertices(m, &tape, room, out, scratch, scratch_floats);
+        collect_edges(block, &lines, (part_range){~(uint64_t)0, 0, E}, &room->edges, slots);
+        return make_vertices(m, &tape, are_known, room, out, scratch, scratch_floats);
     }
     uint64_t evaluations = 0;
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
@@ -238,8 +258,8 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
             continue;
         tape.nodes = part->nodes;
         tape.count = part->node_count;
-        collect_edges(block, &lines, range_of_part(octant), &room->edges);
-        evaluations += make_vertices(m, &tape, room, out, scratch, scratch_floats);
+        collect_edges(block, &lines, range_of_part(octant), &room->edges, slots);
+        evaluations += make_vertices(m, &tape, are_known, room, out, scratch, scratch_floats);
     }
     return evaluations;
 }
@@ -429,6 +449,33 @@ static void collect_all_edges(const csg_block *block, const block_lines *lines, 
     e->count = n;
 }
 
+static int axis_of(uint16_t slot)
+{
+    return slot / CSG_BLOCK_POINTS;
+}
+
+bool csg_marching_keeps_roots(const csg_marching *m)
+{
+    return m->field->tape.shapes != NULL;
+}
+
+void csg_marching_keep_roots(const csg_slots *slots, float *along)
+{
+    for (uint32_t i = 0; i < slots->count; i++)
+        along[i] = slots->at[slots->slot[i]][axis_of(slots->slot[i])];
+}
+
+/* As the edges' roots: from a zero with a sign both make one without. */
+static void place_kept(csg_edges *e, const float *along)
+{
+    for (uint32_t i = 0; i < e->count; i++) {
+        int axis = axis_of(e->rank[i]);
+        e->x[i] = axis == 0 ? along[i] : e->ax[i] + 0.0f;
+        e->y[i] = axis == 1 ? along[i] : e->ay[i] + 0.0f;
+        e->z[i] = axis == 2 ? along[i] : e->az[i] + 0.0f;
+    }
+}
+
 uint64_t csg_marching_roots(const csg_marching *m, const csg_block *block, csg_edges *edges,
                             csg_slots *slots, float *scratch, size_t scratch_floats)
 {
@@ -445,7 +492,9 @@ uint64_t csg_marching_roots(const csg_marching *m, const csg_block *block, csg_e
         point_range range = part ? points_of_part(octant) : (point_range){{0, 0, 0}, {N, N, N}};
         collect_all_edges(block, &lines, range, edges);
         edges->end_distance = m->end_distance;
-        if (edges->count)
+        if (block->along)
+            place_kept(edges, block->along + slots->count);
+        else if (edges->count)
             evaluations += m->kernel->roots(&tape, edges, m->noise, scratch, scratch_floats);
         for (uint32_t i = 0; i < edges->count; i++) {
             float *p = slots->at[edges->rank[i]];

@@ -106,6 +106,11 @@ static inline void csg_marching_shift(const csg_marching *m, const float at[3], 
 uint64_t csg_marching_roots(const csg_marching *marching, const csg_block *block, csg_edges *edges,
                             csg_slots *slots, float *scratch, size_t scratch_floats);
 
+/* Whether they are worth keeping for a second time: those of shapes, which are searched through for
+ * each value, at four bytes a vertex. along: as many as slots, for block->along. */
+bool csg_marching_keeps_roots(const csg_marching *marching);
+void csg_marching_keep_roots(const csg_slots *slots, float *along);
+
 /* The same by the mesh's frame, in room->slots. */
 uint64_t csg_marching_shifted_roots(const csg_marching *marching, const csg_block *block,
                                     csg_marching_room *room, float *scratch, size_t scratch_floats);

@@ -38,15 +38,17 @@ static bool find_item(void *user, uint32_t worker_index, size_t item)
     return true;
 }
 
-static void empty_rooms(csg_mesh_creases *c)
+static bool empty_rooms(csg_mesh_creases *c)
 {
+    bool done = true;
     for (uint32_t i = 0; i < c->workers->count; i++) {
         csg_feature_room *room = c->workers->each[i].features;
         c->store.smooth += room->smooth;
         c->store.fading += room->fading;
         c->workers->each[i].point_evaluations += room->evaluations;
-        csg_feature_room_empty(room);
+        done = csg_feature_store_take_lists(&c->store, room) && done;
     }
+    return done;
 }
 
 /* Joined in the order of the items, whoever did them. */
@@ -58,8 +60,7 @@ static bool collect(csg_mesh_creases *c, size_t items)
         done = csg_feature_store_add(&c->store, c->workers->each[found->worker].features,
                                      found->first, found->count);
     }
-    empty_rooms(c);
-    return done;
+    return empty_rooms(c) && done;
 }
 
 /* Two triangles a feature more than without; in a cell with a joined face all loops are features,
@@ -118,6 +119,8 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
     CSG_ZONE(c->watch->context, "features: find");
     if (!c->sharp)
         return CSGM_OK;
+    for (uint32_t i = 0; i < c->workers->count; i++) /* of blocks that were at hand before */
+        csg_arena_reset(&c->workers->each[i].features->along);
     c->blocks = blocks;
     if (c->store.index.slots) { /* all were found before */
         add_known(c);

@@ -31,6 +31,10 @@ size_t csg_mesh_cells_per_slab(const csg_mesh_slabs *s)
     const csg_memory *memory = &s->watch->context->memory;
     bool sharp = s->creases->sharp;
     enum { BYTES_PER_CELL = 8 * 600, LEAST_CELLS = 16 }; /* eight blocks with tapes and index */
+    enum { BYTES_OF_ROOTS = 8 * 640 };                   /* where they are kept */
+    uint64_t per_cell = BYTES_PER_CELL;
+    if (sharp && csg_marching_keeps_roots(&s->workers->marching))
+        per_cell += BYTES_OF_ROOTS;
     uint64_t bytes = (uint64_t)1 << 30;
     if (memory->limit_bytes) {
         uint64_t used = atomic_load(&memory->used_bytes);
@@ -38,7 +42,7 @@ size_t csg_mesh_cells_per_slab(const csg_mesh_slabs *s)
         uint64_t share = left / (sharp ? 6 : 2);
         bytes = share < bytes ? share : bytes;
     }
-    uint64_t cells = bytes / BYTES_PER_CELL;
+    uint64_t cells = bytes / per_cell;
     return cells > LEAST_CELLS ? (size_t)cells : (size_t)LEAST_CELLS;
 }
 
@@ -193,7 +197,8 @@ static bool keep(csg_halo *halo, const csg_block *block)
             return false;
         halo->blocks[halo->with_spare++] = fresh;
     }
-    *halo->blocks[halo->count++] = *block;
+    *halo->blocks[halo->count] = *block;
+    halo->blocks[halo->count++]->along = NULL; /* as long as the block is at hand */
     return true;
 }
 

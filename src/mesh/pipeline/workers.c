@@ -95,7 +95,7 @@ void csg_mesh_workers_release(csg_mesh_workers *w)
         release_run(memory, &worker->run);
         csg_memory_release(memory, worker->room, sizeof(csg_marching_room));
         if (worker->features)
-            csg_feature_room_release(worker->features, memory);
+            csg_feature_room_release(worker->features);
         csg_memory_release(memory, worker->features, sizeof(csg_feature_room));
         csg_memory_release(memory, worker->scratch, w->scratch_floats * sizeof(float));
     }
