@@ -39,9 +39,10 @@ csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f)
 
 /* Of the polynomial in a box. */
 typedef struct fall {
-    double least;         /* how fast it falls with z, at least */
-    double across[2];     /* its gradient over the face, at most */
-    double bent, row, up; /* |H|, |H_z|, |H_zz|, H the second derivatives */
+    double least;                /* how fast it falls with z, at least */
+    double across[2];            /* its gradient over the face, at most */
+    double bent, face, side, up; /* |H|, H the second derivatives; of the face's axes alone; of z
+                                    with them; |H_zz| */
     double third;
 } fall;
 
@@ -49,7 +50,7 @@ typedef struct fall {
 static fall fall_in(const csg_taylor *p, const double wide[3])
 {
     fall out = {.third = 0};
-    double change[3], all = 0, row = 0;
+    double change[3], squares[3][3];
     for (int i = 0; i < 3; i++) {
         change[i] = 0;
         for (int j = 0; j < 3; j++) {
@@ -61,35 +62,46 @@ static fall fall_in(const csg_taylor *p, const double wide[3])
             }
             change[i] += (own + 0.5 * turned) * wide[j];
             bend = own + turned;
-            all += bend * bend;
-            row += i == 2 ? bend * bend : 0;
-            out.up = bend;
+            squares[i][j] = bend * bend;
         }
     }
     out.least = -p->slope[2] - change[2];
     for (int i = 0; i < 2; i++)
         out.across[i] = fabs(p->slope[i]) + change[i];
-    out.bent = sqrt(all);
-    out.row = sqrt(row);
+    double face = squares[0][0] + 2 * squares[0][1] + squares[1][1];
+    double side = squares[0][2] + squares[1][2];
+    out.bent = sqrt(face + 2 * side + squares[2][2]);
+    out.face = sqrt(face);
+    out.side = sqrt(side);
+    out.up = sqrt(squares[2][2]);
     out.third = sqrt(out.third);
     return out;
 }
 
-/* At least the surface's length along a direction of the face. */
+/* How steep the surface is over the face, at most, and at least its length along a direction of it.
+ */
+static double climb_of(const fall *f)
+{
+    return sqrt(f->across[0] * f->across[0] + f->across[1] * f->across[1]) / f->least;
+}
+
 static double tangent_of(const fall *f)
 {
-    double square = f->across[0] * f->across[0] + f->across[1] * f->across[1];
-    return sqrt(1 + square / (f->least * f->least));
+    double climb = climb_of(f);
+    return sqrt(1 + climb * climb);
 }
 
 /* A 24th of the implicit function's fourth derivatives, at most: along a unit vector of the face,
- * with q the tangent's length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall
- * and |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall, T the third ones. */
+ * with w = (it, climb) the tangent and q its length, |z_2| <= |H(w, w)| / fall,
+ * |z_3| <= (|T| q^3 + 3 |H(w, e_z)| |z_2|) / fall and
+ * |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H(w, e_z)| |z_3|) / fall, T the third ones.
+ * Where the surface hardly climbs and z is an axis of H, H(w, e_z) is nearly 0. */
 static double fourth_of(const fall *f)
 {
-    double q = tangent_of(f), z2 = f->bent * q * q / f->least;
-    double z3 = (f->third * q * q * q + 3 * f->row * q * z2) / f->least;
-    double z4 = (6 * f->third * q * q * z2 + 3 * f->up * z2 * z2 + 4 * f->row * q * z3) / f->least;
+    double climb = climb_of(f), q = tangent_of(f), along = f->side + f->up * climb;
+    double z2 = (f->face + (f->side + along) * climb) / f->least;
+    double z3 = (f->third * q * q * q + 3 * along * z2) / f->least;
+    double z4 = (6 * f->third * q * q * z2 + 3 * f->up * z2 * z2 + 4 * along * z3) / f->least;
     return z4 / 24;
 }
 
