@@ -93,8 +93,9 @@ static bool is_own(const csg_symmetry *h, unsigned mirrors)
     return !swaps || ((mirrors & CSG_MIRROR_XY || is_yz) && (mirrors & CSG_MIRROR_YZ || is_xy));
 }
 
-/* Is the leaf's room enough for so much more of either? Then it is what b is apart from a's
- * image, with what a is off itself. */
+/* b's parameters are those of a's image, but for so much. No more than what floats make of them is
+ * allowed: planes around leaves (halves.c) have room for twice that, slacks for much more, and what
+ * takes off and turned at their word finds them widened. */
 static bool is_close(finder *f, uint32_t a, uint32_t b, double place, double turn)
 {
     const float *of_a = parameters_of(f, a), *of_b = parameters_of(f, b);
