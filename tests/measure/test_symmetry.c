@@ -60,6 +60,17 @@ static void test_counts(void **state)
         {"union(blend = fillet(2)) { cylinder(h = 10, r = 5); translate([0, 0, 6]) "
          "torus(r = 5, tube = 1.5); }",
          7},
+        /* nearly, in the same box */
+        {"difference() { cube([40, 10, 12], center = true); translate([-10, 0, 0]) sphere(2); "
+         "translate([10, 0, 0]) sphere(2.0001); }",
+         3},
+        {"difference() { cube([40, 10, 12], center = true); translate([-10, 0, 0]) sphere(2); "
+         "translate([10.0001, 0, 0]) sphere(2); }",
+         3},
+        {"difference(blend = 0.5) { cube([40, 10, 12], center = true); translate([-10, 0, 0]) "
+         "sphere(2); "
+         "translate([10, 0, 0]) sphere(2); }",
+         7},
         /* nearly */
         {"sphere(5); translate([20, 0, 0]) sphere(5.0001);", 7},
         {"sphere(5); translate([20, 0.001, 0]) sphere(5);", 3},
