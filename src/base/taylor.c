@@ -61,9 +61,8 @@ csg_taylor csg_taylor_scaled(const csg_taylor *a, double factor)
     return out;
 }
 
-/* The second derivatives' change: the third ones along x. */
-static void turn_along(const double t[CSG_TAYLOR_THIRD], const double x[3],
-                       double turned[CSG_TAYLOR_SECOND])
+void csg_taylor_turn(const double t[CSG_TAYLOR_THIRD], const double x[3],
+                     double turned[CSG_TAYLOR_SECOND])
 {
     turned[XX] = t[XXX] * x[0] + t[XXY] * x[1] + t[XXZ] * x[2];
     turned[YY] = t[XYY] * x[0] + t[YYY] * x[1] + t[YYZ] * x[2];
@@ -73,7 +72,7 @@ static void turn_along(const double t[CSG_TAYLOR_THIRD], const double x[3],
     turned[YZ] = t[XYZ] * x[0] + t[YYZ] * x[1] + t[YZZ] * x[2];
 }
 
-static void multiply(const double b[CSG_TAYLOR_SECOND], const double x[3], double out[3])
+void csg_taylor_multiply(const double b[CSG_TAYLOR_SECOND], const double x[3], double out[3])
 {
     out[0] = b[XX] * x[0] + b[XY] * x[1] + b[XZ] * x[2];
     out[1] = b[XY] * x[0] + b[YY] * x[1] + b[YZ] * x[2];
@@ -84,9 +83,9 @@ csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3])
 {
     csg_taylor out = *a;
     double turned[CSG_TAYLOR_SECOND], first[3], second[3];
-    turn_along(a->third, x, turned);
-    multiply(a->bend, x, first);
-    multiply(turned, x, second);
+    csg_taylor_turn(a->third, x, turned);
+    csg_taylor_multiply(a->bend, x, first);
+    csg_taylor_multiply(turned, x, second);
     for (int n = 0; n < CSG_TAYLOR_SECOND; n++)
         out.bend[n] += turned[n];
     for (int i = 0; i < 3; i++) {
@@ -116,6 +115,11 @@ static double square_of_third(const double t[CSG_TAYLOR_THIRD])
                 t[XZZ] * t[XZZ] + t[YZZ] * t[YZZ]);
 }
 
+double csg_taylor_third_norm(const csg_taylor *a)
+{
+    return sqrt(square_of_third(a->third));
+}
+
 double csg_taylor_bends(const csg_taylor *a, const double half[3])
 {
     double b[CSG_TAYLOR_SECOND], t[CSG_TAYLOR_THIRD], along[CSG_TAYLOR_SECOND], first[3], second[3],
@@ -124,9 +128,9 @@ double csg_taylor_bends(const csg_taylor *a, const double half[3])
         b[n] = fabs(a->bend[n]);
     for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
         t[n] = fabs(a->third[n]);
-    turn_along(t, half, along);
-    multiply(b, half, first);
-    multiply(along, half, second);
+    csg_taylor_turn(t, half, along);
+    csg_taylor_multiply(b, half, first);
+    csg_taylor_multiply(along, half, second);
     for (int i = 0; i < 3; i++)
         reach += (0.5 * first[i] + second[i] / 6) * half[i];
     return reach * (1 + 1e-12);
@@ -159,7 +163,7 @@ double csg_taylor_stray(const csg_taylor *a, double r)
                       fabs(b[XZ]) + fabs(b[YZ]) + fabs(b[ZZ])};
     double norm = fmin(sqrt(square_of_bend(b)), fmax(rows[0], fmax(rows[1], rows[2])));
     double bend = fmin(norm * r, csg_norm3(rows) * half_of(r));
-    double third = 0.5 * sqrt(square_of_third(a->third));
+    double third = 0.5 * csg_taylor_third_norm(a);
     return (bend + (third + a->thrice * r) * r * r + a->turned) * (1 + 1e-12);
 }
 
@@ -405,7 +409,7 @@ typedef struct parts {
 static parts parts_of(const csg_taylor *a, double r, double error, double turned)
 {
     double linear = csg_norm3(a->slope), square = sqrt(square_of_bend(a->bend)),
-           cubic = sqrt(square_of_third(a->third));
+           cubic = csg_taylor_third_norm(a);
     return (parts){.l = linear * r,
                    .s = 0.5 * square * r * r,
                    .t = (cubic / 6 + a->quartic * r) * r * r * r + error,

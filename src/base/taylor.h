@@ -59,6 +59,12 @@ double csg_taylor_bends(const csg_taylor *a, const double half[3]);
 /* Its polynomial around x; what is off stays as it is. */
 csg_taylor csg_taylor_moved(const csg_taylor *a, const double x[3]);
 
+/* Third derivatives along x, which is how second ones change; second ones times x. */
+void csg_taylor_turn(const double third[CSG_TAYLOR_THIRD], const double x[3],
+                     double turned[CSG_TAYLOR_SECOND]);
+double csg_taylor_third_norm(const csg_taylor *a); /* Frobenius' */
+void csg_taylor_multiply(const double bend[CSG_TAYLOR_SECOND], const double x[3], double out[3]);
+
 /* How far gradients in the cube may be from the one at its centre. */
 double csg_taylor_stray(const csg_taylor *a, double radius);
 

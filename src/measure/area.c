@@ -348,6 +348,24 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     return a->is_unbounded && q->level < UNBOUNDED_DEEPEST ? INFINITY : open_of(a, turn);
 }
 
+static void turn(const csg_symmetry *by, const void *of, void *out)
+{
+    const account *from = of;
+    account *to = out;
+    *to = *from;
+    csg_symmetry_map(by, from->s, to->s);
+    for (int i = 0; i < FACES; i++) {
+        int side = by->sign[i / 2] > 0 ? i & 1 : 1 - (i & 1);
+        to->faces[i] = from->faces[2 * by->axes[i / 2] + side];
+    }
+}
+
+static bool is_kept(const void *user, const csg_symmetry *by)
+{
+    const job *j = user;
+    return !j->selection || csg_symmetry_keeps(by, j->selection->direction);
+}
+
 static void combine(const void *user, const void *octants, void *out)
 {
     *(account *)out = joined(octants);
@@ -383,6 +401,8 @@ csgm_status csg_measure_area(csg_measure_walk *walk, const csg_area_selection *s
                                    .settle_plain = settle_plain,
                                    .leave_open = leave_open,
                                    .settle = settle,
+                                   .turn = turn,
+                                   .is_kept = is_kept,
                                    .combine = combine,
                                    .conclude = conclude};
     *out = (csg_area_bounds){.high = INFINITY};

@@ -39,57 +39,71 @@ csg_taylor csg_graph_patch_turned(const csg_graph_base *g, const csg_taylor *f)
 
 /* Of the polynomial in a box. */
 typedef struct fall {
-    double least;         /* how fast it falls with z, at least */
-    double across[2];     /* its gradient over the face, at most */
-    double bent, row, up; /* |H|, |H_z|, |H_zz|, H the second derivatives */
+    double least;                /* how fast it falls with z, at least */
+    double across[2];            /* its gradient over the face, at most */
+    double bent, face, side, up; /* |H|, H the second derivatives; of the face's axes alone; of z
+                                    with them; |H_zz| */
     double third;
 } fall;
+
+static double square_of(double x)
+{
+    return x * x;
+}
 
 /* p: around the middle of the box. */
 static fall fall_in(const csg_taylor *p, const double wide[3])
 {
-    fall out = {.third = 0};
-    double change[3], all = 0, row = 0;
-    for (int i = 0; i < 3; i++) {
-        change[i] = 0;
-        for (int j = 0; j < 3; j++) {
-            double turned = 0, own = fabs(p->bend[csg_taylor_second[i][j]]), bend;
-            for (int k = 0; k < 3; k++) {
-                double t = fabs(p->third[csg_taylor_third[i][j][k]]);
-                turned += t * wide[k];
-                out.third += t * t;
-            }
-            change[i] += (own + 0.5 * turned) * wide[j];
-            bend = own + turned;
-            all += bend * bend;
-            row += i == 2 ? bend * bend : 0;
-            out.up = bend;
-        }
+    fall out;
+    double bend[CSG_TAYLOR_SECOND], third[CSG_TAYLOR_THIRD], turned[CSG_TAYLOR_SECOND];
+    double mean[CSG_TAYLOR_SECOND], change[3], squares[CSG_TAYLOR_SECOND];
+    for (int n = 0; n < CSG_TAYLOR_THIRD; n++)
+        third[n] = fabs(p->third[n]);
+    csg_taylor_turn(third, wide, turned);
+    for (int n = 0; n < CSG_TAYLOR_SECOND; n++) {
+        bend[n] = fabs(p->bend[n]);
+        mean[n] = bend[n] + 0.5 * turned[n];
+        squares[n] = square_of(bend[n] + turned[n]);
     }
+    csg_taylor_multiply(mean, wide, change);
     out.least = -p->slope[2] - change[2];
     for (int i = 0; i < 2; i++)
         out.across[i] = fabs(p->slope[i]) + change[i];
-    out.bent = sqrt(all);
-    out.row = sqrt(row);
-    out.third = sqrt(out.third);
+    const unsigned char(*at)[3] = csg_taylor_second;
+    double face = squares[at[0][0]] + 2 * squares[at[0][1]] + squares[at[1][1]];
+    double side = squares[at[0][2]] + squares[at[1][2]], up = squares[at[2][2]];
+    out.bent = sqrt(face + 2 * side + up);
+    out.face = sqrt(face);
+    out.side = sqrt(side);
+    out.up = sqrt(up);
+    out.third = csg_taylor_third_norm(p);
     return out;
 }
 
-/* At least the surface's length along a direction of the face. */
+/* How steep the surface is over the face, at most, and at least its length along a direction of it.
+ */
+static double climb_of(const fall *f)
+{
+    return sqrt(f->across[0] * f->across[0] + f->across[1] * f->across[1]) / f->least;
+}
+
 static double tangent_of(const fall *f)
 {
-    double square = f->across[0] * f->across[0] + f->across[1] * f->across[1];
-    return sqrt(1 + square / (f->least * f->least));
+    double climb = climb_of(f);
+    return sqrt(1 + climb * climb);
 }
 
 /* A 24th of the implicit function's fourth derivatives, at most: along a unit vector of the face,
- * with q the tangent's length, |z_2| <= |H| q^2 / fall, |z_3| <= (|T| q^3 + 3 |H_z| q |z_2|) / fall
- * and |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H_z| q |z_3|) / fall, T the third ones. */
+ * with w = (it, climb) the tangent and q its length, |z_2| <= |H(w, w)| / fall,
+ * |z_3| <= (|T| q^3 + 3 |H(w, e_z)| |z_2|) / fall and
+ * |z_4| <= (6 |T| q^2 |z_2| + 3 |H_zz| |z_2|^2 + 4 |H(w, e_z)| |z_3|) / fall, T the third ones.
+ * Where the surface hardly climbs and z is an axis of H, H(w, e_z) is nearly 0. */
 static double fourth_of(const fall *f)
 {
-    double q = tangent_of(f), z2 = f->bent * q * q / f->least;
-    double z3 = (f->third * q * q * q + 3 * f->row * q * z2) / f->least;
-    double z4 = (6 * f->third * q * q * z2 + 3 * f->up * z2 * z2 + 4 * f->row * q * z3) / f->least;
+    double climb = climb_of(f), q = tangent_of(f), along = f->side + f->up * climb;
+    double z2 = (f->face + (f->side + along) * climb) / f->least;
+    double z3 = (f->third * q * q * q + 3 * along * z2) / f->least;
+    double z4 = (6 * f->third * q * q * z2 + 3 * f->up * z2 * z2 + 4 * along * z3) / f->least;
     return z4 / 24;
 }
 
@@ -103,6 +117,13 @@ static double reach_in(const csg_taylor *p, const csg_graph_patch *q, double hei
     return reach;
 }
 
+/* Of p on the axis of z. */
+static double value_above(const csg_taylor *p, double z)
+{
+    double bend = p->bend[csg_taylor_second[2][2]], third = p->third[csg_taylor_third[2][2][2]];
+    return p->value + (p->slope[2] + (0.5 * bend + third / 6 * z) * z) * z;
+}
+
 /* Over the patch at this height: 1, F is more than `room` all over; -1, less than -room; else 0. p:
  * around the patch's middle. */
 static int sign_at(const csg_taylor *p, const csg_graph_patch *q, double room, double z)
@@ -113,27 +134,11 @@ static int sign_at(const csg_taylor *p, const csg_graph_patch *q, double room, d
     return at.value > reach ? 1 : at.value < -reach ? -1 : 0;
 }
 
-/* T(w_i, w_j, w_k), w being the tangents (1, 0, g_0), (0, 1, g_1). */
-static double third_along(const csg_taylor *p, const double g[2], int i, int j, int k)
-{
-    const int of[3] = {i, j, k};
-    double sum = 0;
-    for (int up = 0; up < 8; up++) { /* bits: which ones go along z */
-        double share = 1;
-        int axes[3];
-        for (int n = 0; n < 3; n++) {
-            axes[n] = up >> n & 1 ? 2 : of[n];
-            share *= up >> n & 1 ? g[of[n]] : 1;
-        }
-        sum += share * p->third[csg_taylor_third[axes[0]][axes[1]][axes[2]]];
-    }
-    return sum;
-}
-
 /* The derivatives of the implicit function where F is p. */
 static void find_derivatives(const csg_taylor *p, csg_graph_patch *q)
 {
     static const int OF[4][3] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
+    double along[2][CSG_TAYLOR_SECOND], times[2][2][3];
     const double *b = p->bend;
     double down = p->slope[2], zz = b[csg_taylor_second[2][2]], across[2], second[2][2];
     for (int i = 0; i < 2; i++)
@@ -145,13 +150,20 @@ static void find_derivatives(const csg_taylor *p, csg_graph_patch *q)
             second[i][k] = -(b[csg_taylor_second[i][k]] + b[csg_taylor_second[i][2]] * q->g[k] +
                              across[k] * q->g[i]) /
                            down;
+    const double w[2][3] = {{1, 0, q->g[0]}, {0, 1, q->g[1]}}; /* the tangents */
+    for (int i = 0; i < 2; i++) {
+        csg_taylor_turn(p->third, w[i], along[i]);
+        for (int k = i; k < 2; k++)
+            csg_taylor_multiply(along[i], w[k], times[i][k]);
+    }
     q->bend[CSG_GRAPH_XX] = second[0][0];
     q->bend[CSG_GRAPH_YY] = second[1][1];
     q->bend[CSG_GRAPH_XY] = second[0][1];
     for (int n = 0; n < 4; n++) {
         int i = OF[n][0], j = OF[n][1], k = OF[n][2];
-        q->third[n] = -(third_along(p, q->g, i, j, k) + second[i][j] * across[k] +
-                        second[i][k] * across[j] + second[j][k] * across[i]) /
+        double third = times[i][j][k] + times[i][j][2] * q->g[k]; /* T(w_i, w_j, w_k) */
+        q->third[n] = -(third + second[i][j] * across[k] + second[i][k] * across[j] +
+                        second[j][k] * across[i]) /
                       down;
     }
 }
@@ -440,14 +452,14 @@ csg_graph_columns csg_graph_patch_place(const csg_graph_base *g, csg_graph_patch
     const double at[3] = {q->at[0], q->at[1], 0};
     const csg_taylor p = csg_taylor_moved(&g->p, at);
     csg_taylor root = p;
-    double rest, high, over = reach_in(&p, q, g->half) + g->room;
-    if (fabs(p.value) > over)
+    double rest, high, line = fabs(p.slope[0]) * q->half[0] + fabs(p.slope[1]) * q->half[1];
+    if (fabs(p.value) > line && fabs(p.value) > reach_in(&p, q, g->half) + g->room)
         return p.value > 0 ? CSG_COLUMNS_FULL : CSG_COLUMNS_EMPTY;
     if (!falls_to(g, &p, q, 0, 0))
         return CSG_COLUMNS_UNKNOWN;
-    if (p.value > 0 && sign_at(&p, q, g->room, g->half) > 0)
+    if (p.value > 0 && value_above(&p, g->half) > 0 && sign_at(&p, q, g->room, g->half) > 0)
         return CSG_COLUMNS_FULL;
-    if (p.value < 0 && sign_at(&p, q, g->room, -g->half) < 0)
+    if (p.value < 0 && value_above(&p, -g->half) < 0 && sign_at(&p, q, g->room, -g->half) < 0)
         return CSG_COLUMNS_EMPTY;
     return expand(&root, q, &rest) && find_room(g, &root, q, rest, &high, off) &&
                    (fabs(q->z) + high <= g->half || falls_to(g, &p, q, q->z - high, q->z + high))

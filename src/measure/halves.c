@@ -118,6 +118,19 @@ static bool has_value(const walker *w, const operand *o)
 /* ---- pieces ------------------------------------------------------------------------------------
  */
 
+/* What a rule folds has its value where its operator ends it: it takes the place of that. */
+static csg_tape_node end_of(const csg_tape_node *last, uint32_t count)
+{
+    csg_tape_node end = *last;
+    end.op = last->join == CSG_JOIN_UNION ? CSG_OP_UNION : CSG_OP_INTERSECTION;
+    end.join = CSG_JOIN_NONE;
+    end.blend = last->join_blend;
+    end.parameters = last->join_parameters;
+    end.size = count;
+    end.arity = 2;
+    return end;
+}
+
 /* The subtree of these nodes becomes one operand, between the planes that its gradients allow. */
 static bool take_whole(walker *w, uint32_t first, uint32_t last, bool with_join)
 {
@@ -129,6 +142,13 @@ static bool take_whole(walker *w, uint32_t first, uint32_t last, bool with_join)
     memcpy(nodes, w->tape->nodes + first, tape.count * sizeof *nodes);
     if (!with_join)
         nodes[last - first].join = CSG_JOIN_NONE;
+    bool is_rule = with_join && csg_blend_is_rule(nodes[last - first].join_blend);
+    if (is_rule && tape.count == CSG_SLOPES_NODES)
+        return false;
+    if (is_rule) {
+        nodes[tape.count] = end_of(&nodes[last - first], tape.count + 1);
+        tape.count++;
+    }
     if (!csg_enclosure_find(w->kernel, &tape, w->c, w->half, w->scratch, w->scratch_floats, &e))
         return false;
     push_operand(w, first);

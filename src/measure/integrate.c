@@ -149,6 +149,29 @@ static double settle(const void *user, const csg_measure_walk *walk, csg_measure
     return open;
 }
 
+static void take_turned(const sum *from, int n, double sign, int k, sum *to)
+{
+    to->low[k] = sign > 0 ? from->low[n] : -from->high[n];
+    to->high[k] = sign > 0 ? from->high[n] : -from->low[n];
+}
+
+/* Each coordinate is another one, or less than 0 times that. */
+static void turn(const csg_symmetry *by, const void *of, void *account)
+{
+    static const int AT[3][3] = {{CSG_INTEGRAL_XX, CSG_INTEGRAL_XY, CSG_INTEGRAL_XZ},
+                                 {CSG_INTEGRAL_XY, CSG_INTEGRAL_XX + 1, CSG_INTEGRAL_YZ},
+                                 {CSG_INTEGRAL_XZ, CSG_INTEGRAL_YZ, CSG_INTEGRAL_XX + 2}};
+    const sum *from = of;
+    sum *to = account;
+    *to = *from;
+    for (int i = 0; i < 3; i++) {
+        take_turned(from, CSG_INTEGRAL_X + by->axes[i], by->sign[i], CSG_INTEGRAL_X + i, to);
+        for (int k = i; k < 3; k++)
+            take_turned(from, AT[by->axes[i]][by->axes[k]], by->sign[i] * by->sign[k], AT[i][k],
+                        to);
+    }
+}
+
 static void combine(const void *user, const void *octants, void *account)
 {
     const sum *of = octants;
@@ -194,6 +217,7 @@ csgm_status csg_measure_integrate(csg_measure_walk *walk, double tolerance, uint
                                    .settle_plain = settle_plain,
                                    .leave_open = leave_open,
                                    .settle = settle,
+                                   .turn = turn,
                                    .combine = combine,
                                    .conclude = conclude};
     memset(out, 0, sizeof *out);

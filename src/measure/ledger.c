@@ -14,7 +14,7 @@ void csg_ledger_release(csg_ledger *r, csg_memory *memory, size_t account_bytes)
 
 csg_ledger csg_ledger_copy(const csg_ledger *from, csg_memory *memory, size_t account_bytes)
 {
-    enum { FEW = 16 };
+    enum { FEW = 2 };
     csg_ledger to = {.is_lost = true};
     if (from->is_lost || from->leaves < FEW ||
         !csg_memory_reserve(memory, (void **)&to.opens, &to.room, from->count, sizeof *to.opens))

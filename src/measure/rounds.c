@@ -4,6 +4,7 @@
 #include "measure/rounds.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/elementary.h"
@@ -24,8 +25,15 @@ typedef struct tally {
     uint64_t cubes;          /* in it */
     uint64_t latest, looked; /* at how many of them the latest round has looked; all rounds */
     bool is_full;            /* it had its share of cubes: it stays as it is */
+    uint32_t images;         /* cubes that are like it, itself included */
     double opens[SIZES];     /* what cubes of each size leave open, that of the first share first */
 } tally;
+
+/* A cube of the frontier is that of another one. */
+typedef struct image {
+    uint32_t index, of;
+    const csg_symmetry *by;
+} image;
 
 typedef struct rounds {
     const csg_rounds_job *job;
@@ -34,6 +42,8 @@ typedef struct rounds {
     char *accounts;
     csg_ledger *ledgers; /* one a cube of the frontier, then one a worker, for what it walks */
     uint32_t *order;     /* of the frontier's cubes, octant by octant, level by level */
+    image *images;
+    size_t image_count;
     double share;
     uint64_t most_of_one;
     atomic_bool out_of_memory;
@@ -165,6 +175,7 @@ static bool look_at(void *user, uint32_t worker_index, size_t index)
         atomic_store(&r->out_of_memory, true);
     if (done) {
         now.looked = kept->looked + now.latest;
+        now.images = kept->images;
         *kept = now;
         memcpy(account_of(r, r->accounts, index), account, r->job->account_bytes);
         csg_ledger_release(ledger, memory, r->job->account_bytes);
@@ -202,10 +213,82 @@ static void begin_tallies(rounds *r)
     for (size_t i = 0; i < r->walk->count; i++) {
         const csg_measure_cube *q = &r->walk->cubes[i];
         bool is_surface = q->state == CSG_CELL_SURFACE;
-        r->tallies[i] = (tally){.worst = is_surface ? INFINITY : 0};
+        r->tallies[i] = (tally){.worst = is_surface ? INFINITY : 0, .images = 1};
         (is_surface ? job->leave_open : job->settle_plain)(job->user, q,
                                                            account_of(r, r->accounts, i));
     }
+}
+
+/* ---- cubes that are like each other ------------------------------------------------------------
+ */
+
+static int compare_places(const void *a, const void *b)
+{
+    const csg_measure_cube *p = *(const csg_measure_cube *const *)a,
+                           *q = *(const csg_measure_cube *const *)b;
+    for (int k = 0; k < 3; k++)
+        if (p->c[k] != q->c[k])
+            return p->c[k] < q->c[k] ? -1 : 1;
+    return 0;
+}
+
+/* The frontier's cube at this place; NULL: there is none with a surface that is as large. */
+static const csg_measure_cube *find_at(const rounds *r, const csg_measure_cube *const *sorted,
+                                       const csg_measure_cube *at)
+{
+    const csg_measure_cube *const *found =
+        bsearch(&at, sorted, r->walk->count, sizeof *sorted, compare_places);
+    return found && (*found)->half == at->half && (*found)->state == CSG_CELL_SURFACE ? *found
+                                                                                      : NULL;
+}
+
+/* Of each cube that is not one itself, in their order. is_image: all false before. */
+static void find_images_of(rounds *r, const csg_measure_cube *const *sorted, size_t of,
+                           bool *is_image)
+{
+    const csg_symmetries *all = &r->walk->symmetries;
+    csg_measure_cube at = r->walk->cubes[of];
+    for (int n = 0; n < all->count && !is_image[of] && at.state == CSG_CELL_SURFACE; n++) {
+        const csg_symmetry *by = &all->of[n];
+        if (r->job->is_kept && !r->job->is_kept(r->job->user, by))
+            continue;
+        csg_symmetry_map(by, r->walk->cubes[of].c, at.c);
+        const csg_measure_cube *found = find_at(r, sorted, &at);
+        size_t index = found ? (size_t)(found - r->walk->cubes) : 0;
+        if (index <= of || is_image[index])
+            continue;
+        is_image[index] = true;
+        r->images[r->image_count++] = (image){(uint32_t)index, (uint32_t)of, by};
+        r->tallies[index].worst = 0;
+        r->tallies[of].images++;
+    }
+}
+
+/* False: out of memory. */
+static bool find_images(rounds *r)
+{
+    size_t count = r->walk->count;
+    csg_arena *arena = &r->walk->workers[0].arena;
+    if (!count || !r->walk->symmetries.count)
+        return true;
+    csg_arena_mark mark = csg_arena_get_mark(arena);
+    const csg_measure_cube **sorted = csg_arena_alloc(arena, count * sizeof *sorted);
+    bool *is_image = csg_arena_calloc(arena, count, sizeof *is_image);
+    for (size_t i = 0; sorted && is_image && i < count; i++)
+        sorted[i] = &r->walk->cubes[i];
+    if (sorted && is_image)
+        qsort(sorted, count, sizeof *sorted, compare_places);
+    for (size_t i = 0; sorted && is_image && i < count; i++)
+        find_images_of(r, sorted, i, is_image);
+    csg_arena_release_to(arena, mark);
+    return sorted && is_image;
+}
+
+static void turn_images(rounds *r)
+{
+    for (size_t i = 0; i < r->image_count; i++)
+        r->job->turn(r->images[i].by, account_of(r, r->accounts, r->images[i].of),
+                     account_of(r, r->accounts, r->images[i].index));
 }
 
 /* ---- from the frontier up to the root ----------------------------------------------------------
@@ -279,6 +362,7 @@ static double conclude(rounds *r, const csg_rounds_counts *counts)
     for (size_t i = 0; i < r->walk->count; i++)
         r->order[i] = (uint32_t)i;
     root.state = CSG_CELL_OUTSIDE; /* if there is no frontier */
+    turn_images(r);
     if (account && gather(r, &root, r->order, r->walk->count, r->order + r->walk->count, account))
         ratio = r->job->conclude(r->job->user, account, counts);
     csg_arena_release_to(arena, mark);
@@ -318,7 +402,7 @@ static double find_share(const rounds *r, course *c, double wanted)
     double opens[SIZES] = {0}, all = 0, divided = 0, share = r->job->share;
     for (size_t i = 0; i < r->walk->count; i++)
         for (int n = 0; n < SIZES; n++)
-            opens[n] += r->tallies[i].opens[n];
+            opens[n] += r->tallies[i].images * r->tallies[i].opens[n];
     for (int n = 0; n < SIZES; n++)
         all += opens[n];
     for (int n = 0; n < SIZES && share > FAR * r->share; n++, share *= ROOT) {
@@ -387,21 +471,23 @@ csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job
            account_bytes = count * job->account_bytes,
            order_bytes = LEVELS * count * sizeof(uint32_t),
            ledger_count = walk->count + walk->worker_count,
-           ledger_bytes = ledger_count * sizeof(csg_ledger);
+           ledger_bytes = ledger_count * sizeof(csg_ledger), image_bytes = count * sizeof(image);
     rounds r = {.job = job, .walk = walk, .share = job->share};
     csgm_status status;
     r.tallies = csg_memory_alloc(memory, bytes);
     r.accounts = csg_memory_alloc(memory, account_bytes);
     r.order = csg_memory_alloc(memory, order_bytes);
     r.ledgers = csg_memory_alloc(memory, ledger_bytes);
-    if (r.tallies && r.accounts && r.order && r.ledgers) {
+    r.images = csg_memory_alloc(memory, image_bytes);
+    if (r.tallies && r.accounts && r.order && r.ledgers && r.images) {
         begin_tallies(&r);
-        status = go_on(&r, most_cubes);
+        status = find_images(&r) ? go_on(&r, most_cubes) : csg_context_no_memory(walk->context);
         for (size_t i = 0; i < ledger_count; i++)
             csg_ledger_release(&r.ledgers[i], memory, job->account_bytes);
     } else {
         status = csg_context_no_memory(walk->context);
     }
+    csg_memory_release(memory, r.images, image_bytes);
     csg_memory_release(memory, r.ledgers, ledger_bytes);
     csg_memory_release(memory, r.order, order_bytes);
     csg_memory_release(memory, r.accounts, account_bytes);

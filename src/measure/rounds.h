@@ -2,7 +2,8 @@
  * Sums over a solid by cubes, round by round. A cube is divided while it leaves more open than a
  * share that is the same for all of them, which costs the fewest cubes; where the sum is too much
  * still, the share is made smaller and the frontier's cubes are walked again. Each round is proven
- * by itself, and each cube of the frontier keeps its latest.
+ * by itself, and each cube of the frontier keeps its latest. Of cubes that are images of each other
+ * one is looked at.
  */
 #ifndef CSG_MEASURE_ROUNDS_H
 #define CSG_MEASURE_ROUNDS_H
@@ -28,6 +29,10 @@ typedef struct csg_rounds_job {
      * what it leaves open; INFINITY: more than any share. */
     double (*settle)(const void *user, const csg_measure_walk *walk, csg_measure_worker *worker,
                      csg_measure_cube *q, void *account);
+    /* Of the image of a cube that comes to `from`. */
+    void (*turn)(const csg_symmetry *by, const void *from, void *account);
+    /* What is measured is the same after it; NULL: after all symmetries of the solid. */
+    bool (*is_kept)(const void *user, const csg_symmetry *by);
     /* Of all octants, in their order. */
     void (*combine)(const void *user, const void *octants, void *account);
     /* After a round: the root's account. Returns the ratio of what is wanted to what is open, 1 or

@@ -131,7 +131,7 @@ static bool split(csg_measure_walk *w, const csg_measure_cube *parent)
 
 csg_measure_cube csg_measure_root(const csg_measure_walk *w)
 {
-    return (csg_measure_cube){.half = w->half, .state = CSG_CELL_SURFACE, .tape = w->field->tape};
+    return (csg_measure_cube){.half = w->half, .state = CSG_CELL_SURFACE, .tape = w->tape};
 }
 
 /* Level by level, on one thread: there are few of them. */
@@ -164,6 +164,7 @@ bool csg_measure_walk_open(csg_measure_walk *w, csgm_context *context, const csg
 {
     *w = (csg_measure_walk){.context = context,
                             .field = field,
+                            .tape = field->tape,
                             .watch = watch,
                             .kernel = csg_kernel_for(context->isa),
                             .scratch_floats = csg_kernel_scratch_floats(field->depth)};
@@ -181,8 +182,9 @@ bool csg_measure_walk_open(csg_measure_walk *w, csgm_context *context, const csg
 csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
                                    const csgm_field *field, csg_mesh_watch *watch)
 {
-    return csg_measure_walk_open(w, context, field, watch) ? find_frontier(w)
-                                                           : csg_context_no_memory(context);
+    bool done = csg_measure_walk_open(w, context, field, watch) &&
+                csg_symmetries_find(&w->tape, field->parameter_count, &w->tapes, &w->symmetries);
+    return done ? find_frontier(w) : csg_context_no_memory(context);
 }
 
 void csg_measure_walk_release(csg_measure_walk *w)

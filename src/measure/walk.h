@@ -7,6 +7,7 @@
 
 #include "field/prune/prune.h"
 #include "measure/halves.h"
+#include "measure/symmetry.h"
 #include "mesh/watch.h"
 
 enum { CSG_MEASURE_DEEPEST = 16 /* levels below the root: 8 bits of half and these are a float */ };
@@ -28,6 +29,8 @@ typedef struct csg_measure_worker {
 typedef struct csg_measure_walk {
     csgm_context *context;
     const csgm_field *field;
+    csg_tape tape;             /* of the field, with room for what it is symmetrical to */
+    csg_symmetries symmetries; /* of the solid, where there is a frontier */
     csg_mesh_watch *watch;
     const csg_kernel *kernel;
     csg_box bounds; /* of the solid, field frame */

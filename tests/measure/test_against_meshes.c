@@ -69,30 +69,42 @@ static bool try_scene(mesh_case *m, uint64_t seed)
     return true;
 }
 
+static bool try_seed(uint64_t seed, uint64_t i)
+{
+    csg_random random = {.state = seed};
+    mesh_case m;
+    mesh_case_begin(&m, 1);
+    test_random_shapes = i % 3 == 1;
+    test_random_rules = i % 6 == 2;
+    test_random_fillets = i % 6 == 5;
+    test_random_curves = i % 12 == 3;
+    csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 5));
+    assert_true(root != CSG_NODE_NONE);
+    mesh_case_compile(&m, root);
+    bool is_tried = try_scene(&m, seed);
+    mesh_case_end(&m);
+    return is_tried;
+}
+
 static void measures_hold(void **state)
 {
     uint32_t tried = 0;
-    for (uint64_t i = 0; i < ROUNDS(12) * test_times; i++) {
-        uint64_t seed = 31000 + test_first_seed + i;
-        csg_random random = {.state = seed};
-        mesh_case m;
-        mesh_case_begin(&m, 1);
-        test_random_shapes = i % 3 == 1;
-        test_random_rules = i % 6 == 2;
-        test_random_fillets = i % 6 == 5;
-        test_random_curves = i % 12 == 3;
-        csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 5));
-        assert_true(root != CSG_NODE_NONE);
-        mesh_case_compile(&m, root);
-        tried += try_scene(&m, seed);
-        mesh_case_end(&m);
-    }
+    for (uint64_t i = 0; i < ROUNDS(12) * test_times; i++)
+        tried += try_seed(31000 + test_first_seed + i, i);
     assert_true(tried > ROUNDS(4) * test_times);
+}
+
+/* Blends interior and exterior, whose operators stand behind the part of a tape that is enclosed.
+ */
+static void measures_of_rules_hold(void **state)
+{
+    assert_true(try_seed(24751008, 8));
 }
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(measures_hold)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(measures_hold),
+                                       cmocka_unit_test(measures_of_rules_hold)};
     test_take_search(argc, argv);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,46 +2,14 @@
  * Measures by the C interface: what is proven when an allocation is refused, time is up or cubes
  * are; options of older versions; parts; closed forms are in tests/cli/test_measure.py.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-/* cmocka wants the four above first */
-#include <cmocka.h>
+#include "measure/solid.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "csgmesh/csgmesh.h"
 #include "failing.h"
 
 static const char TEXT[] = "difference() { cube(2, center = true); sphere(0.5); }\n";
 static const double VOLUME = 8 - 0.52359877559829887, DENSITY = 3;
-
-typedef struct solid {
-    csgm_context *context;
-    csgm_scene *scene;
-    csgm_field *field;
-} solid;
-
-static csgm_status open_solid(solid *s, csgm_context_options options, const char *text)
-{
-    *s = (solid){.context = NULL};
-    options.threads = 1;
-    csgm_status status = csgm_context_create(&options, &s->context);
-    if (status == CSGM_OK)
-        status = csgm_scene_parse(s->context, text, strlen(text), "test", NULL, &s->scene);
-    if (status == CSGM_OK)
-        status = csgm_field_compile(s->context, s->scene, &s->field);
-    return status;
-}
-
-static void close_solid(solid *s)
-{
-    csgm_field_destroy(s->field);
-    csgm_scene_destroy(s->scene);
-    csgm_context_destroy(s->context);
-}
 
 static csgm_measure_options options_to(double tolerance)
 {
@@ -49,12 +17,6 @@ static csgm_measure_options options_to(double tolerance)
     options.tolerance = tolerance;
     options.density = DENSITY;
     return options;
-}
-
-static void assert_holds(csgm_interval interval, double value)
-{
-    assert_true(interval.low <= value);
-    assert_true(interval.high >= value);
 }
 
 static void assert_true_measures(const csgm_measures *m)

@@ -5,6 +5,8 @@
  */
 #include "scene_support.h"
 
+#include <string.h>
+
 #include "random_scene.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
@@ -212,13 +214,80 @@ static void test_creases(void **state)
     assert_true(rows >= 5);
 }
 
+/* ---- mirrors: the field is the same at mirrored points ---------------------------------------- */
+
+static csg_vec3 mirrored(csg_mirror by, csg_vec3 q)
+{
+    switch (by) {
+    case CSG_MIRROR_X:
+        return csg_vec3_make(-q.x, q.y, q.z);
+    case CSG_MIRROR_Y:
+        return csg_vec3_make(q.x, -q.y, q.z);
+    case CSG_MIRROR_Z:
+        return csg_vec3_make(q.x, q.y, -q.z);
+    case CSG_MIRROR_XY:
+        return csg_vec3_make(q.y, q.x, q.z);
+    default:
+        return csg_vec3_make(q.x, q.z, q.y);
+    }
+}
+
+/* Sizes that are equal now and then, as mirrors that exchange axes ask for. */
+static void example_of_equal_sizes(csg_random *random, csg_primitive_kind kind, double *v)
+{
+    csg_refusal refusal = {0};
+    double copy[CSG_PRIMITIVE_MOST_PARAMETERS];
+    example(random, kind, v);
+    memcpy(copy, v, sizeof copy);
+    int from = (int)csg_random_below(random, 3), to = (int)csg_random_below(random, 3);
+    copy[to] = copy[from];
+    if (csg_primitive_of(kind)->check(&refusal, copy))
+        memcpy(v, copy, sizeof copy);
+}
+
+static void test_mirrors(void **state)
+{
+    size_t rows = 0;
+    for (csg_primitive_kind kind = CSG_NODE_FIRST_PRIMITIVE; kind < CSG_NODE_PRIMITIVES_END;
+         kind++) {
+        const csg_primitive *primitive = csg_primitive_of(kind);
+        csg_random random = {905};
+        unsigned seen = 0;
+        if (primitive->traits & CSG_TRAIT_CURVE)
+            continue; /* pieces of curves have none */
+        for (int set = 0; set < 200; set++) {
+            double v[CSG_PRIMITIVE_MOST_PARAMETERS];
+            csg_leaf leaf = {.sigma = 1, .to_own = csg_affine_identity()};
+            csg_affine back;
+            float own[CSG_LEAF_MOST_OWN];
+            example_of_equal_sizes(&random, kind, v);
+            primitive->pack(&leaf, v, 1);
+            for (int i = 0; i < CSG_LEAF_MOST_OWN; i++)
+                own[i] = (float)leaf.own[i];
+            assert_true(csg_affine_invert(leaf.to_own, &back));
+            unsigned mirrors = primitive->mirrors(own);
+            seen |= mirrors;
+            for (unsigned by = 1; by <= mirrors; by *= 2)
+                for (int i = 0; i < 20 && mirrors & by; i++) {
+                    csg_vec3 p = test_point(&random, 1), q = csg_affine_point(&leaf.to_own, p);
+                    csg_vec3 to = csg_affine_point(&back, mirrored((csg_mirror)by, q));
+                    double f = primitive->distance(v, p).value;
+                    if (fabs(primitive->distance(v, to).value - f) > 1e-6)
+                        fail_msg("%s: it is not the same after mirror %u",
+                                 csg_node_kind_name((csg_node_kind)kind), by);
+                }
+        }
+        rows += seen != 0;
+    }
+    assert_true(rows >= 10);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exactness),
-        cmocka_unit_test(test_balls),
-        cmocka_unit_test(test_depth),
-        cmocka_unit_test(test_creases),
+        cmocka_unit_test(test_exactness), cmocka_unit_test(test_balls),
+        cmocka_unit_test(test_depth),     cmocka_unit_test(test_creases),
+        cmocka_unit_test(test_mirrors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

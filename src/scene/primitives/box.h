@@ -126,4 +126,10 @@ static inline bool csg_box_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     return csg_smooth_of_box(l, l->own, (double)l->own[3], 3, out);
 }
 
+static inline unsigned csg_box_mirrors(const float *own)
+{
+    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY : 0) |
+           (own[1] == own[2] ? CSG_MIRROR_YZ : 0);
+}
+
 #endif

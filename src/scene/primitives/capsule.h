@@ -173,4 +173,9 @@ static inline bool csg_capsule_smooth(const csg_smooth_leaf *l, csg_smooth *out)
            csg_smooth_round(l, is_first ? r1 : r1 + (double)l->own[3], p, 3, out);
 }
 
+static inline unsigned csg_capsule_mirrors(const float *own)
+{
+    return CSG_MIRROR_TURNED; /* its middle is not that of its frame */
+}
+
 #endif

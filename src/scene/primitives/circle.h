@@ -92,4 +92,9 @@ static inline bool csg_circle_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     return true;
 }
 
+static inline unsigned csg_circle_mirrors(const float *own)
+{
+    return CSG_MIRROR_TURNED | CSG_MIRROR_Z;
+}
+
 #endif

@@ -303,4 +303,9 @@ static inline bool csg_ellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *ou
     return true;
 }
 
+static inline unsigned csg_ellipsoid_mirrors(const float *own)
+{
+    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY : 0);
+}
+
 #endif

@@ -314,4 +314,9 @@ static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
            csg_frustum_choose(l, &side, &cap, &over, &beyond, end * nz < 0, out);
 }
 
+static inline unsigned csg_frustum_mirrors(const float *own)
+{
+    return CSG_MIRROR_TURNED | (own[7] == 0 ? CSG_MIRROR_Z : 0);
+}
+
 #endif

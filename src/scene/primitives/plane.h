@@ -133,4 +133,9 @@ static inline bool csg_plane_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     return true;
 }
 
+static inline unsigned csg_plane_mirrors(const float *own)
+{
+    return 0; /* its place is in its own parameters */
+}
+
 #endif

@@ -24,7 +24,8 @@ static const csg_primitive rows[] = {
                                      CSG_##NAME##_OWN,                                             \
                                      csg_##name##_gradients,                                       \
                                      csg_##name##_smooth,                                          \
-                                     csg_##name##_may_crease},
+                                     csg_##name##_may_crease,                                      \
+                                     csg_##name##_mirrors},
 #define CSG_CURVE_PRIMITIVE(NAME, name, count, traits, call, otherwise, usual, doc)                \
     [CSG_NODE_##NAME -                                                                             \
         CSG_NODE_FIRST_PRIMITIVE] = {COMMON(name, count, traits, call, otherwise, usual),          \
@@ -32,7 +33,8 @@ static const csg_primitive rows[] = {
                                      0,                                                            \
                                      NULL,                                                         \
                                      NULL,                                                         \
-                                     csg_##name##_may_crease},
+                                     csg_##name##_may_crease,                                      \
+                                     NULL},
 #include "scene/primitives/primitives.def"
 };
 

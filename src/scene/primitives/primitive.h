@@ -36,6 +36,18 @@ enum {
 
 enum { CSG_PRIMITIVE_MOST_PARAMETERS = 16 };
 
+/* A coordinate's sign is turned, or two coordinates change places. */
+typedef enum csg_mirror {
+    CSG_MIRROR_X = 1,
+    CSG_MIRROR_Y = 2,
+    CSG_MIRROR_Z = 4,
+    CSG_MIRROR_SIGNS = CSG_MIRROR_X | CSG_MIRROR_Y | CSG_MIRROR_Z,
+    CSG_MIRROR_XY = 8,
+    CSG_MIRROR_YZ = 16,
+    CSG_MIRROR_ALL = CSG_MIRROR_SIGNS | CSG_MIRROR_XY | CSG_MIRROR_YZ,
+    CSG_MIRROR_TURNED = CSG_MIRROR_X | CSG_MIRROR_Y | CSG_MIRROR_XY
+} csg_mirror;
+
 /* Values of a leaf that matter, from `low` to `high`. */
 typedef struct csg_band {
     float low, high;
@@ -95,6 +107,8 @@ typedef struct csg_primitive {
     /* Whether a crease of the field may be within `reach` of q where its values are in the band. A
      * centre or an axis counts too. */
     bool (*may_crease)(const float *own, const float q[3], float reach, csg_band b);
+    /* Maps of its frame that leave the field as it is: bits of csg_mirror. NULL for curves. */
+    unsigned (*mirrors)(const float *own);
 } csg_primitive;
 
 /* kind: of a primitive, no field and no shape. */

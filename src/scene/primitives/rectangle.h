@@ -106,4 +106,9 @@ static inline bool csg_rectangle_smooth(const csg_smooth_leaf *l, csg_smooth *ou
     return csg_smooth_of_box(l, l->own, (double)l->own[2], 2, out);
 }
 
+static inline unsigned csg_rectangle_mirrors(const float *own)
+{
+    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY : 0);
+}
+
 #endif

@@ -86,4 +86,9 @@ static inline bool csg_slab_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     return csg_smooth_is_positive(l, z) || csg_smooth_is_negative(l, z);
 }
 
+static inline unsigned csg_slab_mirrors(const float *own)
+{
+    return CSG_MIRROR_TURNED | CSG_MIRROR_Z;
+}
+
 #endif

@@ -87,4 +87,9 @@ static inline bool csg_sphere_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     return csg_smooth_round(l, (double)l->own[0], p, 3, out);
 }
 
+static inline unsigned csg_sphere_mirrors(const float *own)
+{
+    return CSG_MIRROR_ALL;
+}
+
 #endif

@@ -168,4 +168,9 @@ static inline bool csg_superellipsoid_smooth(const csg_smooth_leaf *l, csg_smoot
     return true;
 }
 
+static inline unsigned csg_superellipsoid_mirrors(const float *own)
+{
+    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY : 0);
+}
+
 #endif

@@ -172,4 +172,10 @@ static inline bool csg_torus_smooth(const csg_smooth_leaf *l, csg_smooth *out)
     }
 }
 
+static inline unsigned csg_torus_mirrors(const float *own)
+{
+    bool is_arc = own[2] > -1;
+    return CSG_MIRROR_Y | CSG_MIRROR_Z | (is_arc ? 0 : CSG_MIRROR_TURNED);
+}
+
 #endif
