@@ -7,6 +7,7 @@
 
 #include "grid/certify/certify.h"
 #include "mesh/mesh_support.h"
+#include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
 
 static uint32_t pose_count = 8;
@@ -48,15 +49,47 @@ static bool is_doubted(lattice_case *c)
     return found;
 }
 
+/* Where x < 0.79, as a formula that falls by 40 a length: balls of the whole field are a fortieth
+ * of what they could be. */
+static csg_node_id steep_half(mesh_case *c)
+{
+    static const csg_formula_step steps[] = {{.op = CSG_FORMULA_X},
+                                             {.op = CSG_FORMULA_CONSTANT, .constant = 0.79},
+                                             {.op = CSG_FORMULA_SUB, .a = 1, .b = 0},
+                                             {.op = CSG_FORMULA_CONSTANT, .constant = 40},
+                                             {.op = CSG_FORMULA_MUL, .a = 2, .b = 3}};
+    const csg_field_domain domain = {csg_box_all(), false, 0, false};
+    return csg_build_field(&c->builder, steps, 5, &domain, NOWHERE);
+}
+
+/* A sheet of this half thickness across z, as steep. */
+static csg_node_id steep_sheet(mesh_case *c, double half)
+{
+    const csg_formula_step steps[] = {{.op = CSG_FORMULA_Z},
+                                      {.op = CSG_FORMULA_ABS, .a = 0},
+                                      {.op = CSG_FORMULA_CONSTANT, .constant = half},
+                                      {.op = CSG_FORMULA_SUB, .a = 2, .b = 1},
+                                      {.op = CSG_FORMULA_CONSTANT, .constant = 40},
+                                      {.op = CSG_FORMULA_MUL, .a = 3, .b = 4}};
+    const csg_field_domain domain = {csg_box_all(), false, 0, false};
+    return csg_build_field(&c->builder, steps, 6, &domain, NOWHERE);
+}
+
 /* Planted parts, in cells of 1 / 8: a sheet of a tenth of a cell, a ball of radius 0.3, a needle of
- * radius 0.04; a crack of 0.05 in the body. */
+ * radius 0.04; a crack of 0.05 in the body, which a steep formula
+ * may have cut, as it may have made the sheet. */
 enum { SHEET, BALL, NEEDLE, CRACK, PLANTS };
 
-static csg_node_id plant(mesh_case *c, int what, csg_random *random, csg_vec3 *middle)
+static csg_node_id plant(mesh_case *c, int what, bool steep, csg_random *random, csg_vec3 *middle)
 {
     const double h = 0.125;
     csg_node_id body = make_box(c, 0.8, 0.8, 0.8), part;
-    if (what == SHEET)
+    if (steep)
+        body = joined(c, CSG_NODE_INTERSECTION, SHARP, body, steep_half(c));
+    if (what == SHEET && steep)
+        part = joined(c, CSG_NODE_INTERSECTION, SHARP, make_box(c, 0.3, 0.3, 0.3),
+                      steep_sheet(c, 0.05 * h));
+    else if (what == SHEET)
         part = make_box(c, 0.3, 0.3, 0.05 * h);
     else if (what == BALL)
         part = make_sphere(c, 0.3 * h);
@@ -84,19 +117,20 @@ static void planted_parts_are_found(void **state)
 {
     (void)state;
     uint32_t doubted = 0, hidden = 0;
-    for (uint32_t i = 0; i < pose_count * PLANTS; i++) {
+    for (uint32_t i = 0; i < 2 * pose_count * PLANTS; i++) {
         int what = (int)(i % PLANTS);
+        bool steep = i >= pose_count * PLANTS;
         lattice_case c;
         csg_vec3 middle;
         csg_random random = {.state = 1000 + i};
         mesh_case_begin(&c.base, 2);
-        certify(&c, plant(&c.base, what, &random, &middle), 0.125);
+        certify(&c, plant(&c.base, what, steep, &random, &middle), 0.125);
         const csg_certify_place *place = &c.report.places[0];
         bool is_found = c.report.cells[CSG_CELL_MISSED] > 0;
         if (is_found) {
             csg_vec3 off = csg_vec3_sub(place->at, middle);
-            hidden++;
-            doubted += is_doubted(&c);
+            hidden += !steep;
+            doubted += !steep && is_doubted(&c); /* of steep ones it doubts too much to look at */
             assert_int_equal(place->kind, CSG_CELL_MISSED);
             assert_int_equal(place->is_gap, what == CRACK);
             assert_true(csg_vec3_norm(off) < 0.45);
@@ -131,15 +165,19 @@ static csg_node_id clean_solid(mesh_case *c, int which, csg_random *random)
                       moved(c, make_sphere(c, 0.5), 0.8, 0, 0));
     case 14:
         return joined(c, CSG_NODE_DIFFERENCE, (csg_blend){CSG_BLEND_CHAMFER, 0.1, false}, box, rod);
+    case 15:
+        return joined(c, CSG_NODE_INTERSECTION, SHARP, moved(c, box, 0.2, 0, 0), steep_half(c));
+    case 16:
+        return joined(c, CSG_NODE_INTERSECTION, SHARP, moved(c, ball, 0.4, 0, 0), steep_half(c));
     default:
-        return make_any_primitive(c, which % 9, random);
+        return make_any_primitive(c, which < 9 ? which : which - 17, random);
     }
 }
 
 static void clean_scenes_are_clean(void **state)
 {
     (void)state;
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 22; i++) {
         lattice_case c;
         csg_random random = {.state = 500 + (uint64_t)i};
         mesh_case_begin(&c.base, 2);
@@ -170,7 +208,7 @@ static void reports_do_not_depend_on_threads(void **state)
         mesh_case_begin(&c.base, i == 2 ? 3 : 1);
         if (isas[i] == CSGM_ISA_SCALAR)
             c.base.context.isa = CSGM_ISA_SCALAR;
-        certify(&c, plant(&c.base, SHEET, &random, &middle), 0.125);
+        certify(&c, plant(&c.base, SHEET, false, &random, &middle), 0.125);
         if (i == 0)
             first = c.report;
         assert_memory_equal(first.cells, c.report.cells, sizeof first.cells);
@@ -197,7 +235,7 @@ static void runs_out_and_stops(void **state)
         csg_vec3 middle;
         csg_random random = {.state = 5};
         mesh_case_begin(&c.base, 1);
-        mesh_case_compile(&c.base, plant(&c.base, SHEET, &random, &middle));
+        mesh_case_compile(&c.base, plant(&c.base, SHEET, false, &random, &middle));
         assert_true(
             csg_lattice_make(c.base.field->bounds, c.base.field->center, 0.125, 0, &c.lattice));
         csg_memory *memory = &c.base.context.memory;
@@ -229,7 +267,7 @@ static void a_block_can_be_stopped(void **state)
     csg_random random = {.state = 5};
     uint64_t calls = 0;
     mesh_case_begin(&c.base, 1);
-    mesh_case_compile(&c.base, plant(&c.base, SHEET, &random, &middle));
+    mesh_case_compile(&c.base, plant(&c.base, SHEET, false, &random, &middle));
     assert_true(csg_lattice_make(c.base.field->bounds, c.base.field->center, 0.125, 0, &c.lattice));
     csg_certify_options options = {.size = 0.002, .user = &calls, .cancelled = count_calls};
     assert_int_equal(

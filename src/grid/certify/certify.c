@@ -11,6 +11,7 @@
 #include "base/pool.h"
 #include "base/trace.h"
 #include "field/kernels/dispatch.h"
+#include "field/unit_slopes.h"
 #include "grid/certify/certify_block.h"
 
 /* What one frontier cube gave, and where it is. */
@@ -21,7 +22,8 @@ typedef struct segment {
 
 typedef struct walk {
     csgm_context *context;
-    const csgm_field *field;
+    csgm_field field; /* whose signs are those of the field that was given */
+    csg_arena arena;  /* what is its own of that */
     const csg_lattice *lattice;
     const csg_certify_options *options;
     csg_octree *octree;
@@ -102,9 +104,9 @@ static void report_progress(void *user, size_t done, size_t count)
 static csg_box box_of_cell(const walk *w, const uint32_t cell[3])
 {
     double h = w->lattice->cell_size;
-    csg_vec3 min = {w->field->center.x + w->lattice->origin.x + cell[0] * h,
-                    w->field->center.y + w->lattice->origin.y + cell[1] * h,
-                    w->field->center.z + w->lattice->origin.z + cell[2] * h};
+    csg_vec3 min = {w->field.center.x + w->lattice->origin.x + cell[0] * h,
+                    w->field.center.y + w->lattice->origin.y + cell[1] * h,
+                    w->field.center.z + w->lattice->origin.z + cell[2] * h};
     return (csg_box){min, csg_vec3_add(min, csg_vec3_make(h, h, h))};
 }
 
@@ -118,7 +120,7 @@ static void add_to_place(const walk *w, csg_certify_place *place, const csg_cert
         return;
     place->thickness = f->thickness;
     place->is_gap = f->is_gap;
-    place->at = csg_vec3_add(w->field->center, csg_vec3_make(f->at[0], f->at[1], f->at[2]));
+    place->at = csg_vec3_add(w->field.center, csg_vec3_make(f->at[0], f->at[1], f->at[2]));
 }
 
 /* Places whose boxes have come to touch are one. */
@@ -227,8 +229,8 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
     self->samples = csg_memory_alloc(memory, sizeof *self->samples);
     self->reach = (csg_reach){.kernel = kernel,
                               .lattice = w->lattice,
-                              .lipschitz = (double)w->field->tape.lipschitz,
-                              .scratch_floats = csg_kernel_scratch_floats(w->field->depth)};
+                              .lipschitz = (double)w->field.tape.lipschitz,
+                              .scratch_floats = csg_kernel_scratch_floats(w->field.depth)};
     self->reach.noise = 4 * self->reach.lipschitz * (double)rounding;
     self->reach.band = 2 * self->reach.lipschitz * w->lattice->cell_size;
     self->reach.scratch = csg_memory_alloc(memory, self->reach.scratch_floats * sizeof(float));
@@ -268,6 +270,7 @@ static void release(walk *w)
     csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
     csg_memory_release(memory, w->segments, (w->cube_count + 1) * sizeof *w->segments);
     csg_octree_destroy(w->octree);
+    csg_arena_reset(&w->arena);
 }
 
 csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
@@ -276,7 +279,6 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
 {
     CSG_ZONE(context, "certify");
     walk w = {.context = context,
-              .field = field,
               .lattice = lattice,
               .options = options,
               .worker_count = csg_pool_threads(context->pool)};
@@ -285,9 +287,15 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
                                          .cancelled = options->cancelled,
                                          .user = options->user};
     *report = (csg_certify_report){0};
-    csgm_status status = csg_octree_create(context, field, lattice, &octree_options, &w.octree);
-    if (status != CSGM_OK)
+    csg_arena_init(&w.arena, &context->memory);
+    csgm_status status =
+        csg_field_with_unit_slopes(field, &w.arena, &w.field)
+            ? csg_octree_create(context, &w.field, lattice, &octree_options, &w.octree)
+            : csg_context_no_memory(context);
+    if (status != CSGM_OK) {
+        csg_arena_reset(&w.arena);
         return status;
+    }
     if (!create(&w))
         atomic_store(&w.out_of_memory, true);
     else if (csg_pool_run(context->pool, w.cube_count, look_at_cube, report_progress, &w))

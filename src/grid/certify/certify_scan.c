@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "field/kernels/dispatch.h"
+#include "field/unit_slopes.h"
 #include "grid/certify/certify.h"
 #include "grid/certify/certify_reach.h"
 
@@ -91,16 +92,19 @@ bool csg_certify_doubts(csgm_context *context, const csgm_field *field, const cs
                       .user = user,
                       .reach = {.kernel = csg_kernel_for(context->isa),
                                 .lattice = lattice,
-                                .lipschitz = (double)field->tape.lipschitz,
                                 .scratch_floats = csg_kernel_scratch_floats(field->depth)}};
+    csgm_field even;
+    csg_arena_init(&room.tapes, &context->memory);
+    bool done = csg_field_with_unit_slopes(field, &room.tapes, &even);
+    room.reach.lipschitz = (double)even.tape.lipschitz;
     room.reach.noise = 4 * room.reach.lipschitz * (double)csg_octree_rounding(lattice);
     room.reach.band = 2 * room.reach.lipschitz * lattice->cell_size;
     csg_pruner_init(&room.pruner, &context->memory, room.reach.kernel,
                     csg_octree_rounding(lattice));
-    csg_arena_init(&room.tapes, &context->memory);
     size_t bytes = room.reach.scratch_floats * sizeof(float);
     room.reach.scratch = csg_memory_alloc(&context->memory, bytes);
-    if (!doubts || !room.reach.scratch || !follow_some(&room, field, lattice, doubts, count, place))
+    if (!doubts || !done || !room.reach.scratch ||
+        !follow_some(&room, &even, lattice, doubts, count, place))
         *status = csg_context_no_memory(context);
     csg_memory_release(&context->memory, room.reach.scratch, bytes);
     csg_pruner_release(&room.pruner);

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ * Copies of parameters and formulas; see unit_slopes.h.
+ */
+#include "field/unit_slopes.h"
+
+#include <string.h>
+
+#include "scene/operators/blend_kinds.h"
+
+/* What is rounded up. */
+static const float UP = 1 + 0x1p-20f;
+
+static const float *leaf_parameters(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    return tape->parameters + leaf->parameters;
+}
+
+static uint32_t formula_of(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    int own = leaf->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
+    return (uint32_t)leaf_parameters(tape, leaf)[own];
+}
+
+static bool is_steep(const csg_tape *tape, const csg_tape_node *node)
+{
+    return node->op == CSG_OP_FIELD && tape->formulas[formula_of(tape, node)].lipschitz > UP;
+}
+
+/* Whether nothing looks at more than the signs of leaves that are steep. What raises a formula is
+ * rounded, and its zero would be another one. */
+static bool is_by_signs(const csg_tape *tape, const csg_tape_node *node)
+{
+    if (csg_op_is_leaf(node->op))
+        return !is_steep(tape, node) || leaf_parameters(tape, node)[CSG_LEAF_RAISE] == 0;
+    return (node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION) &&
+           csg_blend_is_sharp(node->blend);
+}
+
+/* Values of a leaf by its constant: they are rounded once more, which leaves their signs. */
+static void divide(const csg_tape *tape, const csg_tape_node *leaf, float *parameters,
+                   csg_tape_formula *formulas)
+{
+    csg_tape_formula *formula = &formulas[formula_of(tape, leaf)];
+    float *own = parameters + leaf->parameters;
+    own[CSG_LEAF_SIGMA] /= formula->lipschitz;
+    own[CSG_LEAF_SLACK] = own[CSG_LEAF_SLACK] / formula->lipschitz * UP;
+    own[CSG_LEAF_OFF] = own[CSG_LEAF_OFF] / formula->lipschitz * UP;
+    own[CSG_LEAF_TURNED] = own[CSG_LEAF_TURNED] / formula->lipschitz * UP;
+    formula->lipschitz = UP;
+}
+
+bool csg_field_with_unit_slopes(const csgm_field *field, csg_arena *arena, csgm_field *out)
+{
+    const csg_tape *tape = &field->tape;
+    uint32_t steep = 0, formula_count = 0;
+    bool by_signs = true;
+    *out = *field;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        by_signs = by_signs && is_by_signs(tape, node);
+        steep += is_steep(tape, node);
+        if (node->op == CSG_OP_FIELD && formula_of(tape, node) >= formula_count)
+            formula_count = formula_of(tape, node) + 1;
+    }
+    if (!steep || !by_signs)
+        return true;
+    float *parameters = csg_arena_alloc(arena, field->parameter_count * sizeof *parameters);
+    csg_tape_formula *formulas = csg_arena_alloc(arena, formula_count * sizeof *formulas);
+    if (!parameters || !formulas)
+        return false;
+    memcpy(parameters, tape->parameters, field->parameter_count * sizeof *parameters);
+    memcpy(formulas, tape->formulas, formula_count * sizeof *formulas);
+    for (uint32_t i = 0; i < tape->count; i++)
+        if (is_steep(tape, &tape->nodes[i]))
+            divide(tape, &tape->nodes[i], parameters, formulas);
+    out->tape.parameters = parameters;
+    out->tape.formulas = formulas;
+    out->tape.lipschitz = out->tape.steepest = UP;
+    return true;
+}
