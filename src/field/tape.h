@@ -208,12 +208,25 @@ static inline bool csg_fillet_rows_apart(const float *parameters, uint32_t one, 
     return false;
 }
 
+/* A leaf's own parameters. */
+static inline const float *csg_tape_own(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    bool offset = leaf->frame == CSG_FRAME_OFFSET;
+    return tape->parameters + leaf->parameters +
+           (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+}
+
 /* Of a CSG_OP_SHAPE. */
 static inline const csg_shape *csg_tape_shape(const csg_tape *tape, const csg_tape_node *node)
 {
-    const float *parameters = tape->parameters + node->parameters;
-    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return tape->shapes[(uint32_t)parameters[own]];
+    return tape->shapes[(uint32_t)csg_tape_own(tape, node)[0]];
+}
+
+/* Of a CSG_OP_FIELD or a CSG_OP_COMBINE. */
+static inline const csg_tape_formula *csg_tape_formula_of(const csg_tape *tape,
+                                                          const csg_tape_node *node)
+{
+    return &tape->formulas[(uint32_t)csg_tape_own(tape, node)[0]];
 }
 
 static inline uint32_t csg_tape_leaf_count(const csg_tape *tape)

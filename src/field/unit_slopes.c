@@ -10,20 +10,15 @@
 /* What is rounded up. */
 static const float UP = 1 + 0x1p-20f;
 
-static const float *leaf_parameters(const csg_tape *tape, const csg_tape_node *leaf)
+/* Of its formula: each field has one of its own. */
+static uint32_t number_of(const csg_tape *tape, const csg_tape_node *field)
 {
-    return tape->parameters + leaf->parameters;
-}
-
-static uint32_t formula_of(const csg_tape *tape, const csg_tape_node *leaf)
-{
-    int own = leaf->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return (uint32_t)leaf_parameters(tape, leaf)[own];
+    return (uint32_t)(csg_tape_formula_of(tape, field) - tape->formulas);
 }
 
 static bool is_steep(const csg_tape *tape, const csg_tape_node *node)
 {
-    return node->op == CSG_OP_FIELD && tape->formulas[formula_of(tape, node)].lipschitz > UP;
+    return node->op == CSG_OP_FIELD && csg_tape_formula_of(tape, node)->lipschitz > UP;
 }
 
 /* Whether nothing looks at more than the signs of leaves that are steep. What raises a formula is
@@ -31,7 +26,7 @@ static bool is_steep(const csg_tape *tape, const csg_tape_node *node)
 static bool is_by_signs(const csg_tape *tape, const csg_tape_node *node)
 {
     if (csg_op_is_leaf(node->op))
-        return !is_steep(tape, node) || leaf_parameters(tape, node)[CSG_LEAF_RAISE] == 0;
+        return !is_steep(tape, node) || tape->parameters[node->parameters + CSG_LEAF_RAISE] == 0;
     return (node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION) &&
            csg_blend_is_sharp(node->blend);
 }
@@ -40,7 +35,7 @@ static bool is_by_signs(const csg_tape *tape, const csg_tape_node *node)
 static void divide(const csg_tape *tape, const csg_tape_node *leaf, float *parameters,
                    csg_tape_formula *formulas)
 {
-    csg_tape_formula *formula = &formulas[formula_of(tape, leaf)];
+    csg_tape_formula *formula = &formulas[number_of(tape, leaf)];
     float *own = parameters + leaf->parameters;
     own[CSG_LEAF_SIGMA] /= formula->lipschitz;
     own[CSG_LEAF_SLACK] = own[CSG_LEAF_SLACK] / formula->lipschitz * UP;
@@ -59,8 +54,8 @@ bool csg_field_with_unit_slopes(const csgm_field *field, csg_arena *arena, csgm_
         const csg_tape_node *node = &tape->nodes[i];
         by_signs = by_signs && is_by_signs(tape, node);
         steep += is_steep(tape, node);
-        if (node->op == CSG_OP_FIELD && formula_of(tape, node) >= formula_count)
-            formula_count = formula_of(tape, node) + 1;
+        if (node->op == CSG_OP_FIELD && number_of(tape, node) >= formula_count)
+            formula_count = number_of(tape, node) + 1;
     }
     if (!steep || !by_signs)
         return true;

@@ -78,8 +78,7 @@ static void place_of(const finder *f, uint32_t leaf, double m[3][3], double t[3]
 
 static const float *own_of(const finder *f, uint32_t leaf)
 {
-    bool is_affine = f->tape->nodes[leaf].frame == CSG_FRAME_AFFINE;
-    return parameters_of(f, leaf) + (is_affine ? CSG_LEAF_OWN_AFFINE : CSG_LEAF_OWN_OFFSET);
+    return csg_tape_own(f->tape, &f->tape->nodes[leaf]);
 }
 
 /* A map of a primitive's own frame under which its field is what it was. */

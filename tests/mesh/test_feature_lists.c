@@ -90,7 +90,7 @@ static void test_into_the_store(void **state)
 {
     csg_memory memory;
     csg_memory_init(&memory, NULL, 0);
-    csg_feature_store store = {.memory = &memory};
+    csg_feature_store store = {.memory = &memory, .lists = {.memory = &memory}};
     static csg_feature_whole kept[MANY];
     csg_feature_room *room = csg_memory_alloc(&memory, sizeof *room);
     assert_non_null(room);

@@ -346,11 +346,9 @@ static bool operands_of(const csg_tape *tape, const csg_tape_node *node, const f
 static bool shares_of(const csg_tape *tape, const csg_tape_node *node, const csg_cone_box *at,
                       csg_cone_box *shares, bool *has_edges)
 {
-    const float *own = tape->parameters + node->parameters;
     const csg_cone_box units[3] = {
         {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}}};
-    return csg_cone_formula(tape, &tape->formulas[(uint32_t)own[CSG_LEAF_OWN_AFFINE]], at, units,
-                            shares, has_edges);
+    return csg_cone_formula(tape, csg_tape_formula_of(tape, node), at, units, shares, has_edges);
 }
 
 /* The chain rule twice, from the operands' derivatives on and from the result's by them: each loses
@@ -359,7 +357,7 @@ static bool combine(const csg_tape *tape, const csg_tape_node *node, const float
                     const float *high, stack *s, bool *has_edges)
 {
     const float *own = tape->parameters + node->parameters;
-    const csg_tape_formula *formula = &tape->formulas[(uint32_t)own[CSG_LEAF_OWN_AFFINE]];
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     csg_cone_box at, seeds[3] = {{{0, 0, 0}, {0, 0, 0}}}, out, shares;
     slope_range all = {.low = 0};
     if (!operands_of(tape, node, low, high, &at) || !shares_of(tape, node, &at, &shares, has_edges))

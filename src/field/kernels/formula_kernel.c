@@ -25,13 +25,6 @@ static size_t chunk_size(size_t floats, size_t slots)
     return fits < CSG_BATCH ? fits : CSG_BATCH;
 }
 
-static const csg_tape_formula *formula_of(const csg_tape *tape, const csg_tape_node *node)
-{
-    bool offset = node->frame == CSG_FRAME_OFFSET;
-    uint32_t own = offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return &tape->formulas[(uint32_t)tape->parameters[node->parameters + own]];
-}
-
 /* ---- the point's own coordinates ------------------------------------------------------------- */
 
 /* Row of the frame as m, t: own = m . p + t. */
@@ -154,7 +147,7 @@ static void values(const csg_tape *tape, const csg_tape_node *node, const float 
                    const float *z, size_t count, float *restrict out)
 {
     _Alignas(64) float slots[VALUE_FLOATS];
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
     size_t stride = chunk_size(VALUE_FLOATS, formula->slots);
     for (size_t first = 0; first < count; first += stride) {
@@ -169,7 +162,7 @@ static void combined(const csg_tape *tape, const csg_tape_node *node, const floa
                      size_t operand_stride, size_t count, float *restrict out)
 {
     _Alignas(64) float slots[VALUE_FLOATS];
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
     size_t stride = chunk_size(VALUE_FLOATS, formula->slots);
     for (size_t first = 0; first < count; first += stride) {
@@ -303,7 +296,7 @@ static void gradients(const csg_tape *tape, const csg_tape_node *node, const flo
 {
     _Alignas(64) float slots[GRADIENT_FLOATS];
     float *work = slots + GRADIENT_FLOATS - 2 * CSG_BATCH;
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const csg_tape_step *steps = tape->steps + formula->first;
     const float *parameters = tape->parameters + node->parameters;
     size_t stride = chunk_size(32768, (size_t)formula->slots * GRADIENT_ARRAYS);
@@ -330,7 +323,7 @@ static void partials(const csg_tape *tape, const csg_tape_node *node, const floa
 {
     _Alignas(64) float slots[GRADIENT_FLOATS];
     float *work = slots + GRADIENT_FLOATS - 2 * CSG_BATCH;
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const csg_tape_step *steps = tape->steps + formula->first;
     const float sigma = tape->parameters[node->parameters + CSG_LEAF_SIGMA];
     const float scale = operand_scale(tape, node);
@@ -461,7 +454,7 @@ static void intervals(const csg_tape *tape, const csg_tape_node *node, const flo
                       const float *cy, const float *cz, float radius, float *low, float *high)
 {
     ranges slots[CSG_FORMULA_SLOTS];
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const float *parameters = tape->parameters + node->parameters;
     const float *const c[3] = {cx, cy, cz};
     const float edge = radius * 0.57735034f; /* just above 1 / sqrt(3) */
@@ -479,7 +472,7 @@ static void box_intervals(const csg_tape *tape, const csg_tape_node *node, const
                           const float *high, size_t stride, float *out_low, float *out_high)
 {
     ranges slots[CSG_FORMULA_SLOTS];
-    const csg_tape_formula *formula = formula_of(tape, node);
+    const csg_tape_formula *formula = csg_tape_formula_of(tape, node);
     const float *parameters = tape->parameters + node->parameters;
     const float sigma = parameters[CSG_LEAF_SIGMA], far = (float)CSG_FORMULA_FAR;
     const float scale = operand_scale(tape, node);

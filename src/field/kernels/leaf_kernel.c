@@ -302,12 +302,6 @@ static void falling_interval(const csg_tape *tape, const csg_tape_node *node, cs
     }
 }
 
-static uint32_t formula_index(const csg_tape *tape, const csg_tape_node *node)
-{
-    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return (uint32_t)tape->parameters[node->parameters + (uint32_t)own];
-}
-
 static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, csg_points p,
                           float radius, float *restrict low, float *restrict high,
                           csg_warped_points *warped)
@@ -329,7 +323,7 @@ static void leaf_interval(const csg_tape *tape, const csg_tape_node *node, csg_p
     leaf_values(tape, node, p, low, warped);
     float slope = 1.0f; /* the leaf's Lipschitz constant */
     if (node->op == CSG_OP_FIELD)
-        slope = larger(tape->formulas[formula_index(tape, node)].lipschitz, 1.0f);
+        slope = larger(csg_tape_formula_of(tape, node)->lipschitz, 1.0f);
     float reach = slope * radius * (1.0f + 0x1p-20f) + parameters[CSG_LEAF_SLACK];
     for (int o = 0; o < CSG_OCTANTS; o++) {
         high[o] = low[o] + reach;

@@ -31,7 +31,7 @@ static bool place(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with
     if (leaf->warp && !is_offset)
         csg_taylor_placed(frame, l);
     const csg_taylor *p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
-    l->own = parameters + (is_offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+    l->own = csg_tape_own(w->tape, leaf);
     l->reach = csg_taylor_change_of(p, 3, w->radius).most;
     return true;
 }

@@ -293,7 +293,7 @@ csgm_status csg_certify_run(csgm_context *context, const csgm_field *field,
             ? csg_octree_create(context, &w.field, lattice, &octree_options, &w.octree)
             : csg_context_no_memory(context);
     if (status != CSGM_OK) {
-        csg_arena_reset(&w.arena);
+        release(&w);
         return status;
     }
     if (!create(&w))

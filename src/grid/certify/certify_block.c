@@ -326,9 +326,7 @@ static bool is_slow_way(const csg_tape *tape, uint32_t warp)
 static bool is_long_formula(const csg_tape *tape, const csg_tape_node *node)
 {
     enum { SHORT = 12 };
-    int own = node->frame == CSG_FRAME_OFFSET ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE;
-    return tape->formulas[(uint32_t)tape->parameters[node->parameters + (uint32_t)own]].count >
-           SHORT;
+    return csg_tape_formula_of(tape, node)->count > SHORT;
 }
 
 /* Leaves that are slow to evaluate. */

@@ -67,12 +67,12 @@ static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, bal
         return false;
     const float *parameters = tape->parameters + node->parameters;
     bool offset = node->frame == CSG_FRAME_OFFSET;
-    const float *own = parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
     /* frames stretch lengths by at most 1 / sigma */
     float stretch = offset ? 1.0f : 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
     float reach = 1.01f * at.radius * fmaxf(stretch, 1.0f), q[3];
     to_own(node, parameters + CSG_LEAF_FRAME, at.at, q);
-    return node->warp || may_crease(node->op, own, q, reach, own_band(b, parameters));
+    return node->warp ||
+           may_crease(node->op, csg_tape_own(tape, node), q, reach, own_band(b, parameters));
 }
 
 /* Takes the blend's width to the band. False: it is not smooth, or finer than a cell. */

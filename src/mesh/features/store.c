@@ -42,7 +42,6 @@ bool csg_feature_store_add(csg_feature_store *store, const csg_feature_room *roo
 
 bool csg_feature_store_take_lists(csg_feature_store *store, csg_feature_room *room)
 {
-    store->lists.memory = store->memory;
     bool taken = csg_memory_reserve(store->memory, (void **)&store->taken, &store->taken_capacity,
                                     store->taken_count + 1, sizeof *store->taken);
     if (taken) {
@@ -71,7 +70,6 @@ bool csg_feature_store_adopt(csg_feature_store *store, const csg_feature *featur
 {
     if (!count)
         return true;
-    store->lists.memory = store->memory;
     void *own = csg_arena_alloc(&store->lists, list_bytes);
     if (!own || !reserve(store, count, block_count))
         return false;

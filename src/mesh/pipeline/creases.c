@@ -129,7 +129,7 @@ csgm_status csg_mesh_find_features(csg_mesh_creases *c, csg_mesh_blocks blocks)
     csgm_context *context = c->watch->context;
     size_t items = csg_mesh_item_count(&blocks), first_block = c->store.block_count;
     size_t bytes = (items + !items) * sizeof(found_item);
-    c->store.memory = &context->memory;
+    c->store.memory = c->store.lists.memory = &context->memory;
     c->store.cell_size = c->workers->marching.lattice->cell_size;
     c->found = csg_memory_alloc(&context->memory, bytes);
     if (!c->found)

@@ -83,7 +83,7 @@ static bool take(csg_mesh_slabs *s, const csg_slab *slab, const counted *c)
     memcpy(&s->counts[slab->first_cell - s->first_cell], at, cells * sizeof *s->counts);
     at += cells * sizeof *s->counts;
     csg_feature_store *store = &s->creases->store;
-    store->memory = &s->watch->context->memory;
+    store->memory = store->lists.memory = &s->watch->context->memory;
     store->cell_size = s->workers->marching.lattice->cell_size;
     const void *features = at, *lists = at + c->features * sizeof(csg_feature);
     const void *blocks = (const uint8_t *)lists + c->list_bytes;
