@@ -243,6 +243,7 @@ class Reshaping(ConvertTest):
     def closed(self, facts):
         return facts["boundary_edges"] == facts["nonmanifold_edges"] == facts["misoriented_edges"] == 0
 
+    @cli.optimised_only
     def test_flat_faces_stay_flat(self):
         """Shaded by angles alone, faces between roundings tilt by 8 degrees at their corners."""
         self.write("scene.txt", "cube([30, 20, 10], round = 1);")
@@ -261,8 +262,6 @@ class Reshaping(ConvertTest):
         self.assertTrue(self.closed(one), one)
         self.mesh("diff", "fine.glb", "b.glb", "--tol", "0.05", "--ignore", "normals", "-q")
 
-    @cli.optimised_only
-    @cli.optimised_only
     @cli.optimised_only
     def test_share_and_count(self):
         self.mesh("parts.txt", "-o", "fine.ply", "-r", "60")  # of -r 60 diff once did not end

@@ -34,7 +34,6 @@ class Quality(cli.CliTest):
         self.assertEqual(len(self.bytes("cube(10);", "--quality", "draft", name="out.stl")), 84 + 12 * 50)
 
     @cli.optimised_only
-    @cli.optimised_only
     def test_it_is_the_default(self):
         """Whatever else is asked for; -r 128 is what was the default, and what --certify looks at alone."""
         text = "difference() { cube(10); translate([10, 10, 10]) sphere(4); }"
@@ -263,7 +262,6 @@ intersection(blend = 0.3) {
 
     @cli.optimised_only
     @unittest.skipUnless(cli.has_library("Manifold"), "built without Manifold")
-    @cli.optimised_only
     def test_joined_polyhedra_are_reshaped(self):
         """Of one look, or apart; what is no polyhedron takes cells, as do borders of looks."""
         cut = 'difference() { %ssphere(10, $fn = 60); translate([2.5, -20, -20]) cube(40); }'
