@@ -22,11 +22,21 @@ static void want_divided(csg_cell_loop *w, const csg_shell *s, unsigned cells)
 /* ---- simple ------------------------------------------------------------------------------------
  */
 
+/* Several polygons beside finer leaves: whether they keep apart is seen when their vertices are
+ * known. Not so where cells are nearly the finest: of a wedge that is thinner than they are their
+ * corners see crumbs, and the finest make one edge of it. */
+static bool may_keep_apart(const csg_cell_at_hand *c)
+{
+    return c->is_border && c->polygons.count <= CSG_JUDGED_MOST_PIECES &&
+           c->shell->brick->level + 1u < c->loop->x->bricks->finest;
+}
+
 static bool want_simple(csg_cell_at_hand *c)
 {
     unsigned cell = 1u << csg_cells_bit(c);
-    if (!c->is_whole && (c->polygons.count > 1 || c->shell->brick->several & cell ||
-                         csg_cell_polygons_are_mixed(&c->polygons)))
+    bool several = c->polygons.count > 1 || c->shell->brick->several & cell;
+    if (!c->is_whole &&
+        ((several && !may_keep_apart(c)) || csg_cell_polygons_are_mixed(&c->polygons)))
         want_divided(c->loop, c->shell, cell);
     return true;
 }
@@ -43,9 +53,12 @@ static bool visit_simple(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
 static bool set_border_aside(csg_cell_at_hand *c)
 {
     bool done = true;
-    const csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
+    csg_judge_room *room = &c->loop->x->judge->rooms[c->worker];
+    unsigned cell = csg_cells_bit(c);
+    room->first_piece[cell] = (uint8_t)room->piece_count;
     for (unsigned i = 0; c->is_border && i < c->polygons.count && done; i++)
-        done = room->piece_count == CSG_JUDGED_MOST_APEXES || csg_cells_set_aside(c, i);
+        done = csg_cells_set_aside(c, i);
+    room->end_piece[cell] = (uint8_t)room->piece_count;
     return done;
 }
 
@@ -57,6 +70,8 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
     csg_tape tape;
     unsigned far = 0;
     room->piece_count = 0;
+    memset(room->first_piece, 0, sizeof room->first_piece);
+    memset(room->end_piece, 0, sizeof room->end_piece);
     if (!s->has_finer || s->brick->level == w->x->bricks->finest)
         return true;
     if (!csg_cells_each(w, worker, s, set_border_aside))
@@ -76,6 +91,8 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
         far |= (unsigned)(fans[i]->distance > w->x->farthest ||
                           (csg_cut_has_failed(fans[i]) && !may_fail))
                << fans[i]->cell;
+    for (unsigned i = 0; i < CSG_BRICK_CELLS; i++)
+        far |= (unsigned)!csg_judge_are_apart(room, i, cell) << i;
     want_divided(w, s, far);
     return true;
 }

@@ -8,11 +8,12 @@
 
 #include "mesh/adaptive/extraction.h"
 
-/* Those that have several polygons, or touch a pierced edge of finer ones; *any: there are some.
- * CSGM_OK or why it was stopped (reported). */
+/* Those whose several polygons may not keep apart, or that touch a pierced edge of finer ones;
+ * *any: there are some. CSGM_OK or why it was stopped (reported). */
 csgm_status csg_borders_check_simple(csg_extraction *extraction, bool *any);
 
-/* The same of those whose triangles are too far from the surface; all are simple. */
+/* The same of those whose triangles are too far from the surface, or from each other; all are
+ * simple. */
 csgm_status csg_borders_check_near(csg_extraction *extraction, bool *any);
 
 #endif

@@ -271,11 +271,18 @@ static bool gather_part(const csg_cell_at_hand *c, const csg_polygon_side *side,
     return true;
 }
 
+/* Whether there may be vertices in the side's face: not where the cell has several polygons, but
+ * finer leaves beyond a quarter of one have theirs. */
+static bool may_be_creased(const csg_cell_at_hand *c, const csg_polygon_side *side)
+{
+    unsigned upper;
+    return !has_several(c->shell->brick, c->at) || axis_of_face(side->face, &upper) < 0;
+}
+
 bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
 {
     csg_cell_loop *w = c->loop;
     const csg_brick *brick = c->shell->brick;
-    bool creased = !has_several(brick, c->at);
     out->count = out->in_faces = 0;
     out->is_torn = false;
     for (unsigned i = c->polygons.first[polygon]; i < c->polygons.first[polygon + 1]; i++) {
@@ -288,7 +295,7 @@ bool csg_cells_gather(csg_cell_at_hand *c, unsigned polygon, csg_polygon *out)
         out->faces[out->count] = csg_local_faces(side->from);
         out->is_crease[out->count] = false;
         out->point[out->count++] = point_of(&w->vertices[v]);
-        if (!side->pierced && !(creased && side->alone && !side->along_edge))
+        if (!side->pierced && !(side->alone && !side->along_edge && may_be_creased(c, side)))
             continue;
         int before = out->count;
         for (unsigned k = 0; k < CSG_SIDE_PARTS; k++)

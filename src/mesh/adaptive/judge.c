@@ -101,6 +101,11 @@ bool csg_judge_may_fail(const csg_judge *judge, double cell)
     return cell <= FAILURE * judge->tolerance;
 }
 
+bool csg_judge_may_have_several(const csg_judge *judge, double cell)
+{
+    return cell <= SEVERAL * judge->tolerance;
+}
+
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
                                 csg_judge_room *room, csg_tape *tape)
 {
@@ -259,8 +264,6 @@ static void find_creases(csg_sheet_probe *probe, csg_judge_room *room, const csg
                              csg_judge_divides_sides(csg_bricks_cell(b, brick->level)));
 }
 
-enum { MOST_PIECES = CSG_JUDGED_MOST_APEXES / CSG_BRICK_CELLS /* of a cell */ };
-
 typedef struct brick_work {
     const csg_judge *judge;
     const csg_bricks *bricks;
@@ -392,7 +395,7 @@ static void gather_pieces(brick_work *w)
         unsigned cell = (unsigned)__builtin_ctz(rest);
         const csg_cell_polygons *polygons = &room->polygons[cell];
         room->first_piece[cell] = room->end_piece[cell] = (uint8_t)room->piece_count;
-        if (polygons->count > MOST_PIECES || csg_cell_polygons_are_mixed(polygons)) {
+        if (polygons->count > CSG_JUDGED_MOST_PIECES || csg_cell_polygons_are_mixed(polygons)) {
             w->bad |= 1u << cell;
             continue;
         }
@@ -466,11 +469,11 @@ static void cut_fans(brick_work *w)
             w->bad |= 1u << fans[i]->cell;
 }
 
-static bool are_apart(const csg_judge_room *room, unsigned cell, double margin)
+bool csg_judge_are_apart(const csg_judge_room *room, unsigned cell, double size)
 {
     for (int i = room->first_piece[cell]; i < room->end_piece[cell]; i++)
         for (int k = room->first_piece[cell]; k < i; k++)
-            if (!csg_cuts_are_apart(&room->pieces[i], &room->pieces[k], margin))
+            if (!csg_cuts_are_apart(&room->pieces[i], &room->pieces[k], APART * size))
                 return false;
     return true;
 }
@@ -487,11 +490,11 @@ static uint8_t find_bad(brick_work *w)
         unsigned cell = (unsigned)__builtin_ctz(rest), at[3];
         csg_brick_cell_place(cell, at);
         bool pierced = has_pierced_edge(w->brick, at);
-        if (pierced && !are_apart(room, cell, APART * w->cell))
+        if (pierced && !csg_judge_are_apart(room, cell, w->cell))
             w->bad |= 1u << cell;
         if (!(w->bad >> cell & 1))
             keep_triangles(room, cell);
-        else if (room->polygons[cell].count > 1 && w->cell <= SEVERAL * w->judge->tolerance &&
+        else if (room->polygons[cell].count > 1 && csg_judge_may_have_several(w->judge, w->cell) &&
                  !pierced)
             w->bad &= ~(1u << cell);
     }

@@ -11,7 +11,8 @@ enum {
     CSG_BRICK_SLOTS = 3 * CSG_BRICK_POINTS, /* of edges, of faces: csg_brick_slot */
     CSG_JUDGED_MOST_ROOTS = 2 * CSG_BRICK_EDGES,
     CSG_JUDGED_MOST_CREASES = CSG_SIDE_PARTS * CSG_MOST_FACES,
-    CSG_JUDGED_MOST_APEXES = 32 /* of polygons */
+    CSG_JUDGED_MOST_PIECES = 4,                         /* polygons of a cell */
+    CSG_JUDGED_MOST_APEXES = 8 * CSG_JUDGED_MOST_PIECES /* of a brick's polygons */
 };
 
 /* The slot of an edge, or of a face, along or across an axis, by its lower (lowest) point. */

@@ -12,6 +12,7 @@
 #include "base/mesh_codes.h"
 #include "base/pool.h"
 #include "base/trace.h"
+#include "field/unit_slopes.h"
 #include "mesh/adaptive/borders.h"
 #include "mesh/adaptive/extract.h"
 #include "mesh/adaptive/seen.h"
@@ -34,6 +35,8 @@ static const double SHARE_OF_CELLS = 0.8, SHARE_OF_SIDES = 0.6;
 enum { MOST_BRICKS = 1 << 19 };
 
 typedef struct adaptive {
+    csgm_field field; /* of leaves no steeper than distances: what is near is judged by values */
+    csg_arena tapes;  /* what of it differs */
     csg_mesh_input input;
     csg_mesh_watch watch;
     csg_mesh_workers workers;
@@ -298,6 +301,7 @@ static void release(adaptive *a)
                        a->workers.count * sizeof(csg_judge_room));
     csg_mesh_workers_release(&a->workers);
     csg_mesh_input_release(&a->input);
+    csg_arena_reset(&a->tapes);
 }
 
 static void warn_of_result(const adaptive *a)
@@ -415,8 +419,14 @@ static csgm_status build_within(csgm_context *context, const csgm_field *field,
     csgm_mesh_options base = *options;
     base.resolution = COMPARED_CELLS;
     base.features = CSGM_FEATURES_SMOOTH;
-    adaptive a = {.input = {.context = context, .options = &base, .field = field, .share = share},
-                  .goal = goal};
+    *is_too_fine = false;
+    adaptive a = {.input = {.context = context, .options = &base, .share = share}, .goal = goal};
+    csg_arena_init(&a.tapes, &context->memory);
+    if (!csg_field_with_unit_slopes(field, &a.tapes, &a.field)) {
+        csg_arena_reset(&a.tapes);
+        return csg_context_no_memory(context);
+    }
+    a.input.field = &a.field;
     take_own(&a);
     csg_joined_begin(&a.joined, context, csg_mesh_gets_colors(&a.input),
                      csg_mesh_gets_materials(&a.input));
