@@ -10,6 +10,7 @@
 
 #include "base/rank_loop.h"
 #include "base/trace.h"
+#include "mesh/adaptive/extract.h"
 #include "mesh/remesh/triangle.h"
 
 typedef struct csg_unsure_place {
@@ -139,15 +140,70 @@ bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure)
     return any;
 }
 
+/* ---- without the mesh --------------------------------------------------------------------------
+ */
+
+/* Marks the bricks whose leaves may have triangles within reach of a place. Steps are shorter than
+ * the finest brick, so that none is passed over. */
+static void mark_within_reach(const csg_extraction *x, csg_vec3 at, uint8_t *marks)
+{
+    const csg_bricks *b = x->bricks;
+    double reach = x->farthest, brick = CSG_BRICK_EDGE * b->lattice->cell_size;
+    int steps = (int)ceil(2 * reach / (0.9 * brick));
+    for (int k = 0; k <= steps; k++)
+        for (int j = 0; j <= steps; j++)
+            for (int i = 0; i <= steps; i++) {
+                csg_vec3 off =
+                    csg_vec3_make(2.0 * i / steps - 1, 2.0 * j / steps - 1, 2.0 * k / steps - 1);
+                float point[3];
+                csg_vec3_to_floats(point, csg_vec3_add(at, csg_vec3_scale(off, reach)));
+                uint32_t number = csg_bricks_leaf_at(b, point);
+                if (number != CSG_BRICK_NONE)
+                    marks[number] = 1;
+            }
+}
+
+/* The triangles of the leaves around all places. CSGM_OK or why it ends (reported). */
+static csgm_status extract_around(csg_extraction *x, const csg_unsure *unsure,
+                                  csg_extracted_part *part)
+{
+    csg_memory *memory = &x->context->memory;
+    const size_t bricks = x->bricks->count;
+    uint8_t *marks = csg_memory_alloc(memory, bricks);
+    uint32_t *leaves = csg_memory_alloc(memory, bricks * sizeof *leaves);
+    csgm_status status = CSGM_ERR_MEMORY;
+    if (marks && leaves) {
+        size_t count = 0;
+        memset(marks, 0, bricks);
+        for (size_t i = 0; i < unsure->count; i++)
+            mark_within_reach(x, unsure->places[i].at, marks);
+        for (size_t i = 0; i < bricks; i++)
+            if (marks[i])
+                leaves[count++] = (uint32_t)i;
+        status = csg_extract_part(x, leaves, count, part);
+    } else {
+        status = csg_context_no_memory(x->context);
+    }
+    csg_memory_release(memory, leaves, bricks * sizeof *leaves);
+    csg_memory_release(memory, marks, bricks);
+    return status;
+}
+
 csgm_status csg_unsure_check(csg_extraction *x, bool *any)
 {
     CSG_ZONE(x->context, "unsure places");
     csg_unsure unsure;
+    csg_extracted_part part = {0};
+    uint64_t smooth = x->smooth;
     csgm_status status = csg_unsure_begin(x, &unsure);
     *any = false;
-    if (status == CSGM_OK) {
-        csg_unsure_look(x, &unsure, x->mesh);
-        *any = csg_unsure_end(x, &unsure);
-    }
+    if (status != CSGM_OK || !unsure.count)
+        return status;
+    status = extract_around(x, &unsure, &part);
+    if (status == CSGM_OK)
+        csg_unsure_look(x, &unsure, part.mesh);
+    *any = csg_unsure_end(x, &unsure) && status == CSGM_OK;
+    csg_extracted_part_release(&part);
+    x->smooth = smooth; /* they are counted as the mesh is made */
     return status;
 }

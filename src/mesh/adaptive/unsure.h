@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Places of the surface that the judge found near a side of a brick, with none of the brick's own
  * triangles near them: a bump through which a side goes, a drop in a corner. They are held against
- * the whole mesh when it is there.
+ * the triangles of all leaves around.
  */
 #ifndef CSG_MESH_ADAPTIVE_UNSURE_H
 #define CSG_MESH_ADAPTIVE_UNSURE_H
@@ -20,10 +20,11 @@ csgm_status csg_unsure_begin(csg_extraction *x, csg_unsure *unsure);
 /* Holds them against a mesh, or one part of it after the other. */
 void csg_unsure_look(const csg_extraction *x, csg_unsure *unsure, const csgm_mesh *mesh);
 /* Wants the leaves divided that hold places away from all of it. True: there are some that can be
- * divided; the mesh is to be made again after refinement. */
+ * divided; what it was held against is another one after refinement. */
 bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure);
 
-/* All three, with x->mesh. CSGM_OK or as csg_unsure_begin. */
+/* All three, with the triangles of the leaves around the places, before the mesh is made. CSGM_OK
+ * or as csg_extract_part. */
 csgm_status csg_unsure_check(csg_extraction *x, bool *any);
 
 #endif

@@ -316,13 +316,11 @@ static void warn_of_result(const adaptive *a)
                             !is_empty && a->input.clipped && touches_bounds(a));
 }
 
-/* The mesh as a whole. *any: as csg_unsure_check. */
+/* The mesh as a whole, where no place asks for smaller cells. *any: as csg_unsure_check. */
 static csgm_status extract_whole(csg_extraction *x, bool *any)
 {
-    csgm_status status = csg_extract(x);
-    if (status == CSGM_OK)
-        status = csg_unsure_check(x, any);
-    return status;
+    csgm_status status = csg_unsure_check(x, any);
+    return status == CSGM_OK && !*any ? csg_extract(x) : status;
 }
 
 static csgm_status paint_whole(adaptive *a)
