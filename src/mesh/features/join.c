@@ -167,6 +167,14 @@ static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables,
     return false;
 }
 
+bool csg_feature_stays_outward(const csg_feature *f)
+{
+    for (int s = 0; s < f->side_count; s++)
+        if (f->creased & ~f->flipped & 1u << s && !stays_outward(f, s))
+            return false;
+    return true;
+}
+
 /* ---- joining -----------------------------------------------------------------------------------
  */
 
