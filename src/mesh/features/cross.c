@@ -46,10 +46,11 @@ bool csg_feature_cross_begin(csg_feature_cross *cross)
     csg_near *near = &cross->near;
     size_t count = near->store->count + 1, blocks = near->store->block_count + 1;
     near->boxes = csg_memory_alloc(near->memory, count * sizeof *near->boxes);
+    near->fans = csg_memory_alloc(near->memory, count * sizeof *near->fans);
     cross->states = csg_memory_alloc(near->memory, count * sizeof(cross_state));
     cross->blocks = csg_memory_alloc(near->memory, blocks);
     cross->starts = csg_memory_alloc(near->memory, blocks * sizeof *cross->starts);
-    if (!near->boxes || !cross->states || !cross->blocks || !cross->starts)
+    if (!near->boxes || !near->fans || !cross->states || !cross->blocks || !cross->starts)
         return false;
     find_starts(cross);
     cross->triangles = csg_memory_alloc(near->memory, cross->starts[blocks - 1] + 1);
@@ -67,6 +68,7 @@ void csg_feature_cross_end(csg_feature_cross *cross)
     for (uint32_t i = 0; i < cross->room_count; i++)
         csg_near_room_release(&cross->rooms[i], near->memory);
     csg_memory_release(near->memory, near->boxes, count * sizeof *near->boxes);
+    csg_memory_release(near->memory, near->fans, count * sizeof *near->fans);
     csg_memory_release(near->memory, cross->states, count * sizeof(cross_state));
     size_t blocks = near->store->block_count + 1;
     if (cross->triangles)

@@ -14,6 +14,7 @@ enum { MOST = CSG_FEATURE_MOST_SIDES + 3 };
 typedef struct piece {
     const csg_feature *features, *f;
     const csg_cell_tables *tables;
+    unsigned takes; /* who has which half of flipped sides: f->takes_next, or what is tried */
     int count;
     uint8_t corner[MOST]; /* as in csg_feature.triangle; [0] is the apex */
     csg_vec3 at[MOST], normal;
@@ -116,11 +117,11 @@ static bool cut_sheet(piece *q, int s)
     const csg_feature *f = q->f;
     int k = (s + 1) % f->side_count;
     begin(q, f->side[k].sheet);
-    if (f->flipped & f->takes_next & 1u << s)
+    if (f->flipped & q->takes & 1u << s)
         add(q, (uint8_t)(CSG_FEATURE_BEYOND + s));
     for (add(q, (uint8_t)k); !(f->creased >> k & 1); add(q, (uint8_t)k))
         k = (k + 1) % f->side_count;
-    if (f->flipped & ~f->takes_next & 1u << k)
+    if (f->flipped & ~q->takes & 1u << k)
         add(q, (uint8_t)(CSG_FEATURE_BEYOND + k));
     int before = q->triangle_count;
     if (cut(q, 0, q->count - 1))
@@ -130,10 +131,23 @@ static bool cut_sheet(piece *q, int s)
     return false;
 }
 
+/* The lists of a piece are filled before they are read. */
+static void prepare(piece *q, const csg_feature *features, const csg_cell_tables *tables,
+                    const csg_feature *f, unsigned takes, uint8_t (*triangles)[3])
+{
+    q->features = features;
+    q->f = f;
+    q->tables = tables;
+    q->takes = takes;
+    q->triangles = triangles;
+    q->triangle_count = 0;
+}
+
 bool csg_feature_cut(const csg_feature *features, const csg_cell_tables *tables,
                      const csg_feature *f, uint8_t (*triangles)[3])
 {
-    piece q = {.features = features, .f = f, .tables = tables, .triangles = triangles};
+    piece q;
+    prepare(&q, features, tables, f, f->takes_next, triangles);
     if (!f->creased)
         return cut_tip(&q);
     bool good = true;
@@ -152,7 +166,8 @@ bool csg_feature_is_cut(const csg_feature *features, const csg_cell_tables *tabl
                         const csg_feature *f)
 {
     uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
-    piece q = {.features = features, .f = f, .tables = tables, .triangles = triangles};
+    piece q;
+    prepare(&q, features, tables, f, f->takes_next, triangles);
     if (!f->creased)
         return cut_tip(&q);
     for (int s = 0; s < f->side_count; s++) {
@@ -163,17 +178,22 @@ bool csg_feature_is_cut(const csg_feature *features, const csg_cell_tables *tabl
     return true;
 }
 
-bool csg_feature_cuts_at(const csg_feature *features, const csg_cell_tables *tables,
-                         const csg_feature *f, int side)
+bool csg_feature_is_cut_behind(const csg_feature *features, const csg_cell_tables *tables,
+                               const csg_feature *f, int side, unsigned takes)
 {
     uint8_t triangles[CSG_FEATURE_MOST_SIDES][3];
-    piece q = {.features = features, .f = f, .tables = tables, .triangles = triangles};
+    piece q;
+    prepare(&q, features, tables, f, takes, triangles);
+    return cut_sheet(&q, side);
+}
+
+bool csg_feature_cuts_at(const csg_feature *features, const csg_cell_tables *tables,
+                         const csg_feature *f, int side, unsigned takes)
+{
     int before = side; /* the creased side that the run which ends at this one begins behind */
     do
         before = (before + f->side_count - 1) % f->side_count;
     while (!(f->creased >> before & 1));
-    if (!cut_sheet(&q, side))
-        return false;
-    q.triangle_count = 0;
-    return cut_sheet(&q, before);
+    return csg_feature_is_cut_behind(features, tables, f, side, takes) &&
+           csg_feature_is_cut_behind(features, tables, f, before, takes);
 }

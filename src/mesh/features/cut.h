@@ -16,8 +16,13 @@ bool csg_feature_cut(const csg_feature *features, const csg_cell_tables *tables,
 bool csg_feature_is_cut(const csg_feature *features, const csg_cell_tables *tables,
                         const csg_feature *feature);
 
-/* Whether the two pieces that meet at a creased side can be cut so that nothing folds over. */
+/* Whether the piece behind a creased side can be cut so that nothing folds over. takes: stands for
+ * the feature's takes_next. */
+bool csg_feature_is_cut_behind(const csg_feature *features, const csg_cell_tables *tables,
+                               const csg_feature *feature, int side, unsigned takes);
+
+/* The same of the two pieces that meet at a creased side. */
 bool csg_feature_cuts_at(const csg_feature *features, const csg_cell_tables *tables,
-                         const csg_feature *feature, int side);
+                         const csg_feature *feature, int side, unsigned takes);
 
 #endif

@@ -56,6 +56,12 @@ static unsigned shares_of(const csg_feature *f)
     return mask;
 }
 
+static bool cuts_at(const csg_feature_store *store, const csg_cell_tables *tables,
+                    const csg_feature *f, int side)
+{
+    return csg_feature_cuts_at(store->features, tables, f, side, f->takes_next);
+}
+
 /* Whether the feature and what its neighbours have of the same sheets can be cut. */
 static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables,
                    const csg_feature *f)
@@ -63,25 +69,114 @@ static bool is_cut(const csg_feature_store *store, const csg_cell_tables *tables
     bool good = csg_feature_is_cut(store->features, tables, f);
     for (int s = 0; s < f->side_count && good; s++)
         if (f->flipped >> s & 1)
-            good = csg_feature_cuts_at(store->features, tables, &store->features[f->side[s].beyond],
-                                       f->side[s].beyond_side);
+            good =
+                cuts_at(store, tables, &store->features[f->side[s].beyond], f->side[s].beyond_side);
     return good;
 }
 
-/* Looks for a way to share the halves of its flipped sides out that lets the feature be cut. */
+/* ---- sharing out -------------------------------------------------------------------------------
+ */
+
+/* What takes_next is once halves are shared out by `mask`. */
+static uint16_t takes_of(const csg_feature *f, unsigned mask)
+{
+    unsigned takes = f->takes_next & ~(unsigned)f->flipped;
+    for (int s = 0; s < f->side_count; s++)
+        if (f->flipped >> s & 1) {
+            takes |= (mask & 1) << s;
+            mask >>= 1;
+        }
+    return (uint16_t)takes;
+}
+
+/* The creased side that the piece behind side s ends at. */
+static int end_of_piece(const csg_feature *f, int s)
+{
+    do
+        s = (s + 1) % f->side_count;
+    while (!(f->creased >> s & 1));
+    return s;
+}
+
+/* A piece depends on the halves at its two ends alone: which of these let it be cut, a bit each, by
+ * what takes_next says of its begin (1) and its end (2). */
+static unsigned halves_of(const csg_feature_store *store, const csg_cell_tables *tables,
+                          const csg_feature *f, int s)
+{
+    int end = end_of_piece(f, s);
+    unsigned fit = 0, free = (f->flipped >> s & 1u) | (f->flipped >> end & 1u) << 1;
+    for (unsigned halves = 0; halves < 4; halves++) {
+        if (halves & ~free || (s == end && halves % 3))
+            continue;
+        unsigned takes = (halves & 1) << s | (halves >> 1) << end;
+        fit |= (unsigned)csg_feature_is_cut_behind(store->features, tables, f, s, takes) << halves;
+    }
+    return fit;
+}
+
+/* Whether what the neighbour over side s has of the same sheets can be cut with its halves of all
+ * segments between both by `takes`, which is the feature's takes_next. */
+static bool neighbour_fits(const csg_feature_store *store, const csg_cell_tables *tables,
+                           const csg_feature *f, int s, unsigned takes)
+{
+    const csg_feature *g = &store->features[f->side[s].beyond];
+    unsigned others = g->takes_next;
+    for (int k = 0; k < f->side_count; k++) {
+        unsigned bit = 1u << f->side[k].beyond_side;
+        if (f->flipped >> k & 1 && f->side[k].beyond == f->side[s].beyond)
+            others = takes >> k & 1 ? others | bit : others & ~bit;
+    }
+    return csg_feature_cuts_at(store->features, tables, g, f->side[s].beyond_side, others);
+}
+
+static bool all_fit(const csg_feature_store *store, const csg_cell_tables *tables,
+                    const csg_feature *f, const unsigned *fit, unsigned takes)
+{
+    for (int s = 0; s < f->side_count; s++)
+        if (f->creased >> s & 1 &&
+            !(fit[s] >> ((takes >> s & 1) | (takes >> end_of_piece(f, s) & 1) << 1) & 1))
+            return false;
+    for (int s = 0; s < f->side_count; s++)
+        if (f->flipped >> s & 1 && !neighbour_fits(store, tables, f, s, takes))
+            return false;
+    return true;
+}
+
+/* Looks for a way to share the halves of its flipped sides out that lets the feature be cut. Mostly
+ * there is none, since some piece cannot be cut whoever has its ends. */
 static bool find_shares(csg_feature_store *store, const csg_cell_tables *tables, csg_feature *f)
 {
-    unsigned before = shares_of(f), end = 1u << __builtin_popcount(f->flipped);
+    unsigned fit[CSG_FEATURE_MOST_SIDES], end = 1u << __builtin_popcount(f->flipped);
     if (is_cut(store, tables, f))
         return true;
-    for (unsigned mask = 0; mask < end; mask++) {
-        share_out(store, f, mask);
-        if (is_cut(store, tables, f))
-            return true;
+    if (!f->flipped)
+        return false;
+    for (int s = 0; s < f->side_count; s++) {
+        if (!(f->creased >> s & 1))
+            continue;
+        fit[s] = halves_of(store, tables, f, s);
+        if (!fit[s])
+            return false;
     }
-    share_out(store, f, before);
+    for (unsigned mask = 0; mask < end; mask++) {
+        if (!all_fit(store, tables, f, fit, takes_of(f, mask)))
+            continue;
+        share_out(store, f, mask);
+        return true;
+    }
     return false;
 }
+
+bool csg_feature_stays_outward(const csg_feature *f)
+{
+    for (int s = 0; s < f->side_count; s++)
+        if (f->creased & ~f->flipped & 1u << s && !stays_outward(f, s))
+            return false;
+    return true;
+}
+
+/* ---- joining -----------------------------------------------------------------------------------
+ */
 
 /* Whether two apexes are not one place. */
 static bool are_apart(const csg_feature_store *store, const csg_feature *f, const csg_feature *g)
@@ -106,8 +201,7 @@ static bool side_flips(csg_feature_store *store, const csg_cell_tables *tables, 
         looks_along(f->at, f->side[s].corner, g->at, f->normal[f->side[s].sheet]) &&
         looks_along(g->at, f->side[s1].corner, f->at, g->normal[g->side[t].sheet]))
         return true;
-    return (csg_feature_cuts_at(store->features, tables, f, s) &&
-            csg_feature_cuts_at(store->features, tables, g, t)) ||
+    return (cuts_at(store, tables, f, s) && cuts_at(store, tables, g, t)) ||
            find_shares(store, tables, f) || find_shares(store, tables, g);
 }
 

@@ -22,6 +22,9 @@ bool csg_feature_unfolds(csg_feature_store *store, const csg_cell_tables *tables
 bool csg_feature_side_holds(csg_feature_store *store, const csg_cell_tables *tables,
                             csg_feature *feature, int side);
 
+/* False: it does not hold, since a triangle across a crease that is not flipped looks inwards. */
+bool csg_feature_stays_outward(const csg_feature *feature);
+
 /* False: it does not hold wherever the vertex at one of its corners goes. In little time. */
 bool csg_feature_may_hold(const csg_feature_store *store, const csg_feature *feature, int corner);
 

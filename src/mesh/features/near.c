@@ -3,8 +3,11 @@
  */
 #include "mesh/features/near.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
+
+#include "mesh/features/fan.h"
 
 enum { E = CSG_BLOCK_EDGE };
 
@@ -121,6 +124,19 @@ static bool is_in_face(const csg_cell_tables *tables, uint8_t edge, const int ce
     return false;
 }
 
+enum { FAN_UNKNOWN, FAN_NO, FAN_YES };
+
+/* Threads may find it twice; they find the same. */
+static bool is_fan(const csg_near *near, uint32_t i)
+{
+    int known = atomic_load_explicit(&near->fans[i], memory_order_relaxed);
+    if (known == FAN_UNKNOWN) {
+        known = csg_fan_is_clear(near->store, near->marching, i) ? FAN_YES : FAN_NO;
+        atomic_store_explicit(&near->fans[i], (unsigned char)known, memory_order_relaxed);
+    }
+    return known == FAN_YES;
+}
+
 static void triangle_of(const view *v, const csg_feature_block *block, uint32_t i, int index,
                         csg_near_triangle *t)
 {
@@ -156,6 +172,8 @@ static void triangle_of(const view *v, const csg_feature_block *block, uint32_t 
         in_face = in_face || is_in_face(m->tables, corners[c].edge, cell, beside);
     }
     t->plain = !moved && (t->owner[1] == i || (with_apex && in_face));
+    for (int k = 0; k < 2; k++)
+        t->fan[k] = is_fan(v->near, t->owner[k]) ? APEX | t->owner[k] : 0;
     set_box(t);
 }
 
@@ -307,8 +325,10 @@ static csg_near_box box_of(const csg_near *near, const csg_feature *f)
 void csg_near_measure(const csg_near *near, size_t index)
 {
     const csg_feature_block *block = &near->store->blocks[index];
-    for (uint32_t i = block->first; i < block->first + block->count; i++)
+    for (uint32_t i = block->first; i < block->first + block->count; i++) {
         near->boxes[i] = box_of(near, &near->store->features[i]);
+        atomic_store_explicit(&near->fans[i], FAN_UNKNOWN, memory_order_relaxed);
+    }
 }
 
 csg_near_box csg_near_box_of_block(const csg_near *near, size_t index)
@@ -514,15 +534,35 @@ static int smooth_triangles(const view *v, const int at[3],
 /* ---- what meets --------------------------------------------------------------------------------
  */
 
+static bool has_vertex(const csg_near_triangle *t, uint32_t vertex)
+{
+    return t->shape.vertex[0] == vertex || t->shape.vertex[1] == vertex ||
+           t->shape.vertex[2] == vertex;
+}
+
+/* Whether both are of one fan of which it is known that no two meet. */
+static bool share_fan(const csg_near_triangle *s, const csg_near_triangle *t)
+{
+    for (int k = 0; k < 2; k++)
+        if (s->fan[k] && has_vertex(s, s->fan[k]) && has_vertex(t, s->fan[k]))
+            return true;
+    return false;
+}
+
 /* Apexes out of order fold creases over to all but one line. There they must keep apart by what
  * decimals are off: half a unit in the last place each coordinate, two points by less than two. */
 static bool meet(const view *v, const csg_near_triangle *s, const csg_near_triangle *t)
 {
     bool is_far = s->far && t->far;
     float reach = reach_of(v->near);
-    return overlap(&s->box, &t->box, is_far ? reach : 0) &&
-           (csg_exact_meet(&s->shape, &t->shape) ||
-            (is_far && csg_exact_nearly_meet(&s->shape, &t->shape, (double)reach)));
+    if (!overlap(&s->box, &t->box, is_far ? reach : 0))
+        return false;
+    if (share_fan(s, t)) {
+        assert(!csg_exact_meet(&s->shape, &t->shape));
+        return false;
+    }
+    return csg_exact_meet(&s->shape, &t->shape) ||
+           (is_far && csg_exact_nearly_meet(&s->shape, &t->shape, (double)reach));
 }
 
 /* Whether the plane of a triangle passes a cell: where none does, what marching cubes makes there

@@ -7,6 +7,8 @@
 #ifndef CSG_MESH_FEATURES_NEAR_H
 #define CSG_MESH_FEATURES_NEAR_H
 
+#include <stdatomic.h>
+
 #include "mesh/features/cell.h"
 #include "mesh/features/exact.h"
 #include "mesh/features/features.h"
@@ -20,8 +22,9 @@ typedef struct csg_near_triangle {
     csg_exact_triangle shape; /* vertices: numbers of this search */
     csg_near_box box;         /* around it */
     uint32_t owner[2]; /* features; one twice where it is one's alone, NONE: of a smooth polygon */
-    bool own;          /* of the block at hand */
-    bool far;          /* reaches out of its cell, and not only to the apex next door */
+    uint32_t fan[2]; /* its owners' apexes, where they have a fan in which nothing meets; else 0 */
+    bool own;        /* of the block at hand */
+    bool far;        /* reaches out of its cell, and not only to the apex next door */
     bool plain; /* no vertex has moved; with the feature's apex, or none; and with one next door
                    only if it has a corner in the face between */
 } csg_near_triangle;
@@ -56,9 +59,10 @@ typedef struct csg_near {
     const csg_octree *octree;
     csg_memory *memory;
     csg_near_box *boxes; /* of all triangles of each feature */
+    atomic_uchar *fans;  /* of each: whether nothing meets around its apex (fan.h), once asked */
 } csg_near;
 
-/* The boxes of a block's features. */
+/* The boxes of a block's features; what is known of their fans is forgotten. */
 void csg_near_measure(const csg_near *near, size_t block);
 /* Around the features of a block, whose boxes are known. */
 csg_near_box csg_near_box_of_block(const csg_near *near, size_t block);

@@ -158,13 +158,22 @@ static bool split(const csg_feature_probe *probe, csg_block_part parts[CSG_OCTAN
 /* ---- cells -----------------------------------------------------------------------------------
  */
 
-/* Cells of one part of a block that the surface passes: their centres, and how many leaves may be
- * what the field is there. */
+enum { MOST_NEAR = 4 };
+
+/* A leaf that may be what the field is in a cell, and its value at the centre. */
+typedef struct near_leaf {
+    const csg_tape_node *node;
+    float f;
+} near_leaf;
+
+/* Cells of one part of a block that the surface passes: their centres, and what leaves may be what
+ * the field is there. */
 typedef struct part_cells {
     size_t count;
     uint16_t cell[PART_CELLS];
     float x[PART_CELLS], y[PART_CELLS], z[PART_CELLS], f[PART_CELLS];
     uint8_t leaves[PART_CELLS];
+    near_leaf near[PART_CELLS][MOST_NEAR];
     bool may_crease[PART_CELLS];
 } part_cells;
 
@@ -211,6 +220,53 @@ static bool is_one_at_a_time(const csg_block_part *part)
     return true;
 }
 
+/* The way from a ball's centre to that of a cell. False: the leaf is no ball, or it is stretched,
+ * or too near. */
+static bool find_way(const csg_tape *tape, const csg_tape_node *node, const ball *at, float way[3],
+                     float *length)
+{
+    if (!csg_op_has(node->op, CSG_TRAIT_BALL) || node->frame != CSG_FRAME_OFFSET)
+        return false;
+    to_own(node, tape->parameters + node->parameters + CSG_LEAF_FRAME, at->at, way);
+    *length = sqrtf(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    return *length > 1.01f * at->radius;
+}
+
+/* Whether two leaves may have the same value somewhere in a cell. What lies between them changes by
+ * the difference of their gradients at the centre and, farther away, by how much these turn: of a
+ * ball's distance by 1 / (distance from its centre). */
+static bool may_cross(const csg_tape *tape, const near_leaf *a, const near_leaf *b, const ball *at,
+                      float slack)
+{
+    const near_leaf *leaf[2] = {a, b};
+    float way[2][3], length[2], sigma[2], turn = 0, square = 0;
+    for (int k = 0; k < 2; k++) {
+        if (!find_way(tape, leaf[k]->node, at, way[k], &length[k]))
+            return true;
+        sigma[k] = tape->parameters[leaf[k]->node->parameters + CSG_LEAF_SIGMA];
+        turn += fabsf(sigma[k]) / (length[k] - at->radius);
+    }
+    for (int i = 0; i < 3; i++) {
+        float apart = sigma[0] * way[0][i] / length[0] - sigma[1] * way[1][i] / length[1];
+        square += apart * apart;
+    }
+    float most = (sqrtf(square) + 0.5f * turn * at->radius) * at->radius;
+    return !(fabsf(a->f - b->f) > 1.01f * most + 2 * slack);
+}
+
+/* Takes one more leaf that may be the field in a cell. Whether it may turn into that of another. */
+static bool add_near(const csg_tape *tape, part_cells *cells, size_t i, near_leaf leaf,
+                     const ball *at, float slack)
+{
+    if (cells->leaves[i] == MOST_NEAR)
+        return true;
+    for (int k = 0; k < cells->leaves[i]; k++)
+        if (may_cross(tape, &cells->near[i][k], &leaf, at, slack))
+            return true;
+    cells->near[i][cells->leaves[i]++] = leaf;
+    return false;
+}
+
 /* A segment of a polygon runs between two points of the surface in one cell, so that no point of it
  * is farther than half a diagonal from one of them, and f there no farther from zero than it can
  * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
@@ -234,7 +290,8 @@ static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool
         if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
             continue;
         ball at = {{cells->x[i], cells->y[i], cells->z[i]}, HALF_DIAGONAL * cell};
-        cells->may_crease[i] = ++cells->leaves[i] > 1 ||
+        near_leaf leaf = {node, cells->f[i]};
+        cells->may_crease[i] = add_near(&tape, cells, i, leaf, &at, slack) ||
                                leaf_may_crease(&tape, &alone, at, (csg_band){-off, off}, still);
     }
 }

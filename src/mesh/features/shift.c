@@ -122,6 +122,16 @@ static bool looks_out(const csg_feature *f, int corner, csg_vec3 n, double cell)
     return true;
 }
 
+/* Of what csg_feature_holds asks: what costs next to nothing. */
+static bool ring_stays_outward(const ring *r)
+{
+    for (int k = 0; k < AROUND; k++)
+        if (r->f[k]->state != CSG_FEATURE_BARE && r->f[k]->state != CSG_FEATURE_UNSOLVED &&
+            !csg_feature_stays_outward(r->f[k]))
+            return false;
+    return true;
+}
+
 static bool ring_holds(csg_feature_store *store, const csg_cell_tables *tables, const ring *r,
                        csg_vec3 normal)
 {
@@ -130,6 +140,8 @@ static bool ring_holds(csg_feature_store *store, const csg_cell_tables *tables, 
         if (r->f[k]->state == CSG_FEATURE_BARE &&
             !looks_out(r->f[k], r->corner[k], normal, store->cell_size))
             return false;
+    if (!ring_stays_outward(r))
+        return false;
     for (int k = 0; k < AROUND; k++) {
         csg_feature *f = r->f[k];
         if (f->state == CSG_FEATURE_BARE || f->state == CSG_FEATURE_UNSOLVED)
