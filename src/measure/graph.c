@@ -296,21 +296,27 @@ static void add_part(const csg_taylor_pieces *faces, double half, double whole, 
     }
 }
 
+bool csg_graph_section(const csg_taylor_pieces *f, double half, int axis, int side,
+                       csg_taylor_pieces *out)
+{
+    out->count = f->count;
+    for (int i = 0; i < f->count; i++) {
+        const csg_taylor_piece *of = &f->of[i];
+        out->of[i].f = on_face(&of->f, side * half, axis);
+        out->of[i].condition_count = of->condition_count;
+        out->of[i].is_partial = of->is_partial;
+        for (int n = 0; n < of->condition_count; n++)
+            out->of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
+    }
+    return csg_graph_field_keep(out, half);
+}
+
 bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
                     double *area, double *error)
 {
     csg_taylor_pieces faces; /* not filled: they are large */
     part sum = {0, 0};
-    faces.count = f->count;
-    for (int i = 0; i < f->count; i++) {
-        const csg_taylor_piece *of = &f->of[i];
-        faces.of[i].f = on_face(&of->f, side * half, axis);
-        faces.of[i].condition_count = of->condition_count;
-        faces.of[i].is_partial = of->is_partial;
-        for (int n = 0; n < of->condition_count; n++)
-            faces.of[i].conditions[n] = on_face(&of->conditions[n], side * half, axis);
-    }
-    if (!csg_graph_field_keep(&faces, half))
+    if (!csg_graph_section(f, half, axis, side, &faces))
         return false;
     add_part(&faces, half, half, axis, enough, FACE_QUARTERED, &sum);
     *area = sum.area;

@@ -32,9 +32,32 @@ bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double 
  * the least cosine between the two. INFINITY: it is not known. */
 double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most);
 
+/* The models on the cube's face x_axis = side * half, side: -1, 1, or 0, which is the square
+ * through its middle, as ones that do not depend on that axis. False: they are the field nowhere
+ * there. */
+bool csg_graph_section(const csg_taylor_pieces *f, double half, int axis, int side,
+                       csg_taylor_pieces *out);
+
 /* Of the cube's face x_axis = side * half, side: -1 or 1: the area of it that is in the
  * solid, within *error of *area. False: the surface may not be a graph there. */
 bool csg_graph_face(const csg_taylor_pieces *f, double half, int axis, int side, double enough,
                     double *area, double *error);
+
+/* Where a curve runs, in the frame of the cube of which its plane is a section. */
+typedef struct csg_graph_turned {
+    int across;    /* the axis along which nothing changes */
+    int radius;    /* the axis along which the distance from the axis of revolution grows */
+    double at;     /* that distance at the cube's centre */
+    double enough; /* what may be left open; 0: as little as can be is */
+} csg_graph_turned;
+
+/* Of models that do not depend on an axis: the integral of the distance from the axis of revolution
+ * along the surface's section. False: the surface may not be a graph there. */
+bool csg_graph_arc(const csg_taylor_pieces *section, double half, const csg_graph_turned *turned,
+                   double *least, double *most);
+
+/* The same at most, of any pieces, as csg_graph_area_most tells it. */
+double csg_graph_arc_most(const csg_taylor_pieces *section, double half,
+                          const csg_graph_turned *turned, double stray_most);
 
 #endif

@@ -13,6 +13,7 @@
 #include "measure/extent.h"
 #include "measure/integrate.h"
 #include "measure/mesh_integrals.h"
+#include "measure/profile.h"
 #include "measure/properties.h"
 #include "mesh/inspect.h"
 
@@ -83,12 +84,22 @@ static csgm_status measure(csg_measure_walk *walk, const csgm_measure_options *o
     out->cubes = extents.cubes;
     if (status != CSGM_OK)
         return status;
-    status = csg_measure_integrate(walk, options->tolerance, options->most_cubes, &integrals);
-    out->cubes += integrals.cubes;
+    csg_profile_measures profile = {.tolerance = options->tolerance,
+                                    .area_tolerance = CSG_AREA_WIDER * options->tolerance};
+    if (walk->axis != CSG_AXIS_NONE)
+        status = csg_measure_profile(walk, &profile);
+    out->cubes += profile.integrals.cubes;
+    integrals = profile.integrals;
+    if (status == CSGM_OK && !profile.is_close) {
+        status = csg_measure_integrate(walk, options->tolerance, options->most_cubes, &integrals);
+        out->cubes += integrals.cubes;
+    }
     if (!integrals.is_proven)
         return status;
     csg_measure_derive(integrals.low, integrals.high, field->center, options->density, out);
-    if (status == CSGM_OK)
+    if (profile.is_area_close)
+        out->area = profile.area;
+    else if (status == CSGM_OK)
         status = take_area(walk, options, out);
     bool is_close = integrals.high[0] - integrals.low[0] <= options->tolerance * integrals.high[0];
     out->is_reached = status == CSGM_OK && extents.is_close && is_close;

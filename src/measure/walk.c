@@ -64,8 +64,7 @@ bool csg_measure_divide(const csg_measure_walk *w, csg_measure_worker *s,
             children[o].c[axis] = parent->c[axis] + (o >> axis & 1 ? half : -half);
             c[axis][o] = (float)children[o].c[axis];
         }
-    float radius = (float)(half * sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON));
-    if (!csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], radius))
+    if (!csg_prune_octants(&s->pruner, &parent->tape, c[0], c[1], c[2], csg_measure_radius(half)))
         return false;
     for (int o = 0; o < CSG_OCTANTS; o++) {
         csg_measure_cube *child = &children[o];
@@ -167,6 +166,7 @@ bool csg_measure_walk_open(csg_measure_walk *w, csgm_context *context, const csg
                             .tape = field->tape,
                             .watch = watch,
                             .kernel = csg_kernel_for(context->isa),
+                            .axis = CSG_AXIS_NONE,
                             .scratch_floats = csg_kernel_scratch_floats(field->depth)};
     csg_arena_init(&w->tapes, &context->memory);
     w->bounds = (csg_box){csg_vec3_sub(field->bounds.min, field->center),
@@ -183,6 +183,7 @@ csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
                                    const csgm_field *field, csg_mesh_watch *watch)
 {
     bool done = csg_measure_walk_open(w, context, field, watch) &&
+                csg_axis_find(&w->tape, field->parameter_count, &w->tapes, &w->axis) &&
                 csg_symmetries_find(&w->tape, field->parameter_count, &w->tapes, &w->symmetries);
     return done ? find_frontier(w) : csg_context_no_memory(context);
 }

@@ -5,7 +5,11 @@
 #ifndef CSG_MEASURE_WALK_H
 #define CSG_MEASURE_WALK_H
 
+#include <float.h>
+#include <math.h>
+
 #include "field/prune/prune.h"
+#include "measure/axis.h"
 #include "measure/halves.h"
 #include "measure/symmetry.h"
 #include "mesh/watch.h"
@@ -31,6 +35,7 @@ typedef struct csg_measure_walk {
     const csgm_field *field;
     csg_tape tape;             /* of the field, with room for what it is symmetrical to */
     csg_symmetries symmetries; /* of the solid, where there is a frontier */
+    int axis;                  /* that all of it turns about, or CSG_AXIS_NONE */
     csg_mesh_watch *watch;
     const csg_kernel *kernel;
     csg_box bounds; /* of the solid, field frame */
@@ -43,6 +48,12 @@ typedef struct csg_measure_walk {
     size_t count, capacity;
     float tau;
 } csg_measure_walk;
+
+/* Of the ball around a cube, for pruning by floats. */
+static inline float csg_measure_radius(double half)
+{
+    return (float)(half * sqrt(3.0) * (1 + 4 * (double)FLT_EPSILON));
+}
 
 /* Bounds are finite and not empty. CSGM_OK, or why it was stopped (reported); release in any case.
  */

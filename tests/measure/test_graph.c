@@ -259,6 +259,30 @@ static void blends_hold(void **state)
     assert_true(seen.turned > ROUNDS(10000) * test_times);
 }
 
+/* Its distance in a blend, which has no closed form. */
+static void ellipsoids_have_models(void **state)
+{
+    tally seen = {0};
+    has_fillets = false;
+    for (uint64_t i = 0; i < ROUNDS(40) * test_times; i++) {
+        csg_random random = {.state = seed = 49000 + test_first_seed + i};
+        double v[3] = {0};
+        mesh_case m;
+        mesh_case_begin(&m, 1);
+        for (int k = 0; k < 3; k++)
+            v[k] = csg_random_uniform(&random, 0.1, 0.8);
+        csg_node_id solid = csg_build_primitive(&m.builder, CSG_NODE_ELLIPSOID, v, NOWHERE);
+        csg_node_id end = make_half_space(&m, 0, 0, 1, csg_random_uniform(&random, -0.3, 0.3));
+        csg_blend blend = {CSG_BLEND_ROUND, csg_random_uniform(&random, 0.1, 0.4), false};
+        solid = joined(&m, CSG_NODE_INTERSECTION, blend, posed_anyhow(&m, solid, &random), end);
+        mesh_case_compile(&m, solid);
+        try_scene(&m, &random, &seen);
+        mesh_case_end(&m);
+    }
+    assert_true(seen.known > ROUNDS(1500) * test_times && seen.near > ROUNDS(20000) * test_times);
+    assert_true(seen.turned > ROUNDS(10000) * test_times);
+}
+
 /* A rounded cylinder cut by a plane or by a cylinder that is flush with one of its faces, so
  * tangent to its rounded edge: where a number as blend ends. */
 static void flush_solids_have_models(void **state)
@@ -517,6 +541,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(models_hold),
         cmocka_unit_test(blends_hold),
+        cmocka_unit_test(ellipsoids_have_models),
         cmocka_unit_test(flush_solids_have_models),
         cmocka_unit_test(warps_hold),
         cmocka_unit_test(graphs_hold),

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/elementary.h"
 #include "random_scene.h"
 #include "scene/primitives/kinds.h"
 #include "scene/primitives/primitive.h"
@@ -216,8 +217,9 @@ static void test_creases(void **state)
 
 /* ---- mirrors: the field is the same at mirrored points ---------------------------------------- */
 
-static csg_vec3 mirrored(csg_mirror by, csg_vec3 q)
+static csg_vec3 mirrored(csg_mirror by, csg_vec3 q, double angle)
 {
+    double cosine = csg_cos(angle), sine = csg_sin(angle);
     switch (by) {
     case CSG_MIRROR_X:
         return csg_vec3_make(-q.x, q.y, q.z);
@@ -227,6 +229,8 @@ static csg_vec3 mirrored(csg_mirror by, csg_vec3 q)
         return csg_vec3_make(q.x, q.y, -q.z);
     case CSG_MIRROR_XY:
         return csg_vec3_make(q.y, q.x, q.z);
+    case CSG_MIRROR_AROUND:
+        return csg_vec3_make(cosine * q.x - sine * q.y, sine * q.x + cosine * q.y, q.z);
     default:
         return csg_vec3_make(q.x, q.z, q.y);
     }
@@ -270,7 +274,8 @@ static void test_mirrors(void **state)
             for (unsigned by = 1; by <= mirrors; by *= 2)
                 for (int i = 0; i < 20 && mirrors & by; i++) {
                     csg_vec3 p = test_point(&random, 1), q = csg_affine_point(&leaf.to_own, p);
-                    csg_vec3 to = csg_affine_point(&back, mirrored((csg_mirror)by, q));
+                    csg_vec3 to = csg_affine_point(
+                        &back, mirrored((csg_mirror)by, q, csg_random_uniform(&random, 0, 6)));
                     double f = primitive->distance(v, p).value;
                     if (fabs(primitive->distance(v, to).value - f) > 1e-6)
                         fail_msg("%s: it is not the same after mirror %u",

@@ -280,16 +280,106 @@ static inline bool csg_ellipsoid_may_crease(const float *own, const float q[3], 
     return csg_band_meets(b, least * least / fmaxf(own[0], fmaxf(own[1], own[2])), INFINITY);
 }
 
-/* Its distance has no closed form. Where nothing but inside and outside of it matters
- * a (1 - |x / axes|^2) / 2 does, a being the least semi-axis: near its surface that is no steeper
- * than |x / axes|. */
+/* Of the secular equation in own coordinates, z being along the shortest axis: with
+ * t_i = r_i y_i / e_i / (u + d_i) what is left of it, sum t_i^2 - 1, and half its slope in u, less
+ * than 0: sum t_i^2 / (u + d_i). False: u + d_i may be 0. */
+static inline bool csg_secular_models(const csg_smooth_leaf *l, const csg_secular *s,
+                                      const csg_taylor *u, csg_taylor *rest, csg_taylor *slope)
+{
+    *rest = csg_taylor_constant(-1);
+    *slope = csg_taylor_constant(0);
+    for (int i = 0; i < 3; i++) {
+        csg_taylor from = csg_taylor_raised(*u, s->shift[i]), inverse;
+        if (!csg_taylor_inverse(&from, l->radius, &inverse))
+            return false;
+        csg_taylor t = csg_taylor_product(&l->p[i].f, &inverse, l->radius);
+        t = csg_taylor_scaled(&t, s->weight[i]);
+        t = csg_taylor_square(&t, l->radius);
+        *rest = csg_taylor_sum(rest, 1, &t);
+        t = csg_taylor_product(&t, &inverse, l->radius);
+        *slope = csg_taylor_sum(slope, 1, &t);
+    }
+    return true;
+}
+
+/* The equation's root is off a polynomial by what that leaves of it over the slope S_u: all terms
+ * have negative powers of u + d_i, so that falls by no more than 3 / u of itself a length. Its
+ * gradient is -S_y / S_u, which with |t| = 1 changes by 10 k / (u S_u) a length, k being the
+ * largest r_i / e_i / (u + d_i). False: too little is known of it. */
+static inline bool csg_secular_enclose(const csg_smooth_leaf *l, const csg_secular *s,
+                                       csg_taylor *u)
+{
+    static const double MORE = 1 + 1e-9, CLOSE = 0.05, CHANGE = 11;
+    csg_taylor rest, slope;
+    if (!csg_secular_models(l, s, u, &rest, &slope))
+        return false;
+    double r = l->radius, from = csg_taylor_least(u, r), steep = 2 * csg_taylor_least(&slope, r);
+    double left = fabs(rest.value) + csg_taylor_reach(&rest, r), steepest = 0;
+    if (!(from > 0 && steep > 0 && left < CLOSE * from * steep && left < CLOSE))
+        return false;
+    double off = 2 * left / steep, close = from - off;
+    steep *= 1 - 3 * off / close;
+    for (int i = 0; i < 3; i++)
+        steepest = fmax(steepest, s->weight[i] / (close + s->shift[i]));
+    double turn = CHANGE * steepest / (close * steep);
+    csg_taylor polynomial = rest;
+    polynomial.error = polynomial.quartic = polynomial.turned = polynomial.thrice = 0;
+    double value = fabs(rest.value) + csg_taylor_reach(&polynomial, r);
+    double gradient = csg_norm3(rest.slope) + csg_taylor_stray(&polynomial, r);
+    u->error = (rest.error + value) / steep * MORE;
+    u->quartic = rest.quartic / steep * MORE;
+    u->turned = ((rest.turned + gradient) / steep + turn * u->error) * MORE;
+    u->thrice = (rest.thrice / steep + turn * u->quartic * r) * MORE;
+    return true;
+}
+
+/* The distance is (1 - u) |w|, w_i = y_i / (u + d_i), u being the secular equation's root: as a
+ * polynomial by the chord method, which makes it right by an order more each time. */
+static inline bool csg_ellipsoid_distance_model(const csg_smooth_leaf *l, csg_smooth *out)
+{
+    enum { ORDERS = 4 };
+    csg_secular s, at_center;
+    csg_taylor u, rest, slope, norm, w[3];
+    for (int i = 0; i < 3; i++) {
+        double ratio = (double)l->own[i] / (double)l->own[2];
+        s.shift[i] = (ratio - 1) * (ratio + 1);
+        s.weight[i] = ratio * ratio / (double)l->own[i];
+        at_center.shift[i] = s.shift[i];
+        at_center.weight[i] = s.weight[i] * fabs(l->p[i].f.value);
+    }
+    u = csg_taylor_constant(csg_secular_root(&at_center));
+    for (int n = 0; n < ORDERS; n++) {
+        if (!csg_secular_models(l, &s, &u, &rest, &slope) || !(slope.value > 0))
+            return false;
+        u = csg_taylor_sum(&u, 0.5 / slope.value, &rest);
+        u.error = u.quartic = u.turned = u.thrice = 0;
+    }
+    if (!csg_secular_enclose(l, &s, &u))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        csg_taylor from = csg_taylor_raised(u, s.shift[i]), inverse;
+        if (!csg_taylor_inverse(&from, l->radius, &inverse))
+            return false;
+        w[i] = csg_taylor_product(&l->p[i].f, &inverse, l->radius);
+    }
+    const csg_taylor *const along[3] = {&w[0], &w[1], &w[2]};
+    if (!csg_taylor_norm(along, 3, l->radius, &norm))
+        return false;
+    u = csg_taylor_raised(csg_taylor_scaled(&u, -1), 1);
+    out->f = csg_taylor_product(&u, &norm, l->radius);
+    return true;
+}
+
+/* Where nothing but inside and outside of it matters a (1 - |x / axes|^2) / 2 does, a being the
+ * least semi-axis: near its surface that is no steeper than |x / axes|. */
 static inline bool csg_ellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
     double least = fmin((double)l->own[0], fmin((double)l->own[1], (double)l->own[2])), far = 0;
     csg_smooth sum;
-    if (!l->choice || !l->choice->at_zero || l->with_slopes)
+    if (l->with_slopes)
         return false;
-    l->choice->ways = 1;
+    if (!l->choice || !l->choice->at_zero)
+        return csg_ellipsoid_distance_model(l, out);
     sum.f = csg_taylor_constant(1);
     for (int i = 0; i < 3; i++) {
         double scale = 1 / (double)l->own[i], x = l->p[i].f.value * scale;
@@ -305,7 +395,7 @@ static inline bool csg_ellipsoid_smooth(const csg_smooth_leaf *l, csg_smooth *ou
 
 static inline unsigned csg_ellipsoid_mirrors(const float *own)
 {
-    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY : 0);
+    return CSG_MIRROR_SIGNS | (own[0] == own[1] ? CSG_MIRROR_XY | CSG_MIRROR_AROUND : 0);
 }
 
 #endif

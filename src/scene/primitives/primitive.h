@@ -36,7 +36,8 @@ enum {
 
 enum { CSG_PRIMITIVE_MOST_PARAMETERS = 16 };
 
-/* A coordinate's sign is turned, or two coordinates change places. */
+/* A coordinate's sign is turned, or two coordinates change places; AROUND: all is turned about the
+ * z axis, by any angle. */
 typedef enum csg_mirror {
     CSG_MIRROR_X = 1,
     CSG_MIRROR_Y = 2,
@@ -44,8 +45,9 @@ typedef enum csg_mirror {
     CSG_MIRROR_SIGNS = CSG_MIRROR_X | CSG_MIRROR_Y | CSG_MIRROR_Z,
     CSG_MIRROR_XY = 8,
     CSG_MIRROR_YZ = 16,
-    CSG_MIRROR_ALL = CSG_MIRROR_SIGNS | CSG_MIRROR_XY | CSG_MIRROR_YZ,
-    CSG_MIRROR_TURNED = CSG_MIRROR_X | CSG_MIRROR_Y | CSG_MIRROR_XY
+    CSG_MIRROR_AROUND = 32,
+    CSG_MIRROR_TURNED = CSG_MIRROR_X | CSG_MIRROR_Y | CSG_MIRROR_XY | CSG_MIRROR_AROUND,
+    CSG_MIRROR_ALL = CSG_MIRROR_SIGNS | CSG_MIRROR_TURNED | CSG_MIRROR_YZ
 } csg_mirror;
 
 /* Values of a leaf that matter, from `low` to `high`. */
