@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * The corner table: random collapses and flips keep a closed oriented manifold of the same genus,
- * and what is no manifold is refused.
+ * and what is no manifold is refused. What a change would cross is found.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "mesh/mesh_support.h"
-#include "mesh/remesh/corners.h"
+#include "mesh/remesh/crossing.h"
 #include "scene/primitives/kinds.h"
 
 static void inspect(mesh_case *c, const csg_corners *m, csgm_mesh_check *check)
@@ -99,11 +99,41 @@ static void test_refused(void **state)
     test_context_end(&context);
 }
 
+/* A pyramid over a square that is cut from corner 1 to corner 2. What has the other diagonal for a
+ * side, below it, shares a corner with either half and lies in both along that side. */
+static void test_other_diagonal(void **state)
+{
+    static const uint32_t pyramid[] = {0, 1, 2, 2, 1, 3, 1, 0, 4, 3, 1, 4, 2, 3, 4, 0, 2, 4};
+    static const csg_vec3 at[] = {{0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {4, 0, 0}, {2, 0, 1}};
+    static const csg_vec3 below = {2, 0, -1}, beside[] = {{-2, 1, 0}, {-2, -1, 0}};
+    const csg_vec3 new[][3] = {
+        {at[0], at[3], below}, {at[1], at[2], below}, {at[0], beside[0], beside[1]}};
+    static const uint32_t ids[][3] = {{0, 3, 5}, {1, 2, 5}, {0, 6, 7}};
+    csgm_context context;
+    csg_corners m;
+    csg_triangle_tree tree = {.noise = csg_triangle_tree_noise(4)};
+    test_context_init(&context);
+    assert_int_equal(csg_corners_make(&m, &context.memory, pyramid, 6, 5), CSG_CORNERS_MADE);
+    assert_true(csg_triangle_tree_make(&tree, &m, at));
+    for (int i = 0; i < 3; i++) {
+        csg_crossing_change change = {.at = &new[i],
+                                      .vertex = &ids[i],
+                                      .count = 1,
+                                      .vertices = {CSG_CORNER_NONE, CSG_CORNER_NONE},
+                                      .triangles = {CSG_CORNER_NONE, CSG_CORNER_NONE}};
+        assert_int_equal(csg_crossing_is_made(&tree, &change, NULL), i == 0);
+    }
+    csg_triangle_tree_release(&tree);
+    csg_corners_release(&m);
+    test_context_end(&context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_changes),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_other_diagonal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

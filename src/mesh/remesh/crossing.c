@@ -32,7 +32,7 @@ static plate plate_of(const csg_vec3 v[3], const uint32_t ids[3])
     return (plate){v, ids, normal, csg_vec3_norm(normal)};
 }
 
-/* Whether the segment p q meets the triangle; `clear` < 0: only if it is well inside. */
+/* Whether the segment p q meets the triangle, or comes as near to it as `clear`. */
 static bool pierces(csg_vec3 p, csg_vec3 q, const plate *t, double clear)
 {
     const csg_vec3 *v = t->v;
@@ -81,6 +81,8 @@ static bool is_beyond(const plate *a, const csg_vec3 b[3], int shared, double cl
     return low > least || high < -least;
 }
 
+/* Beside a corner in common all is near: there only what is met counts, a side that is touched
+ * too: the sheets beyond it would lie in one another. */
 static bool cross(const plate *a, const plate *b, double clear)
 {
     int i = -1, k = -1, common = common_corners(a->ids, b->ids, &i, &k);
@@ -89,8 +91,8 @@ static bool cross(const plate *a, const plate *b, double clear)
     if (is_beyond(a, b->v, k, clear) || is_beyond(b, a->v, i, clear))
         return false;
     if (common == 1)
-        return pierces(a->v[(i + 1) % 3], a->v[(i + 2) % 3], b, -clear) ||
-               pierces(b->v[(k + 1) % 3], b->v[(k + 2) % 3], a, -clear);
+        return pierces(a->v[(i + 1) % 3], a->v[(i + 2) % 3], b, 0) ||
+               pierces(b->v[(k + 1) % 3], b->v[(k + 2) % 3], a, 0);
     for (k = 0; k < 3; k++)
         if (pierces(a->v[k], a->v[(k + 1) % 3], b, clear) ||
             pierces(b->v[k], b->v[(k + 1) % 3], a, clear))
