@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Scenes that make meshers leak, cross themselves or fall over: all of a folder (scenes/hard), as
- * they stand and in random rotations. Each mesh is a closed oriented 2-manifold that does not run
- * through itself, sharp and smooth, with the same bytes for other threads and without pruning.
+ * they stand and in random rotations; thinned out, as they stand. Each mesh is a closed oriented
+ * 2-manifold that does not run through itself, sharp and smooth, with the same bytes for other
+ * threads and without pruning.
  *
  * Arguments: the folder, how many rotations of each scene (default 1), cells along the longest side
  * (default 32), another seed for the rotations, how the names of the scenes begin (default: all).
@@ -137,6 +138,21 @@ static void check_scene(const char *text, csgm_mesh_options options, const char 
     unbuild(&sharp);
 }
 
+/* Cells that follow the shape, thinned out, coarsely: wedges and gaps are thinner than the
+ * tolerance. */
+static void check_thinned(const char *text, const char *name)
+{
+    built b;
+    char what[2 * MOST_NAME];
+    csgm_mesh_options options = csgm_mesh_options_default();
+    options.quality = CSGM_QUALITY_DRAFT;
+    snprintf(what, sizeof what, "%s, thinned out", name);
+    build(&b, text, &options, 2);
+    check_closed(&b, what);
+    check_uncrossed(&b, what);
+    unbuild(&b);
+}
+
 /* ---- the scenes ------------------------------------------------------------------------------
  */
 
@@ -168,6 +184,7 @@ static void check_poses(const char *name, uint64_t seed)
     read_scene(name, text);
     bool is_fixed = own_lattice(text, &options);
     check_scene(text, options, name);
+    check_thinned(text, name);
     for (unsigned i = 0; i < rotation_count && !is_fixed; i++) {
         double a[3];
         for (int k = 0; k < 3; k++)

@@ -341,7 +341,7 @@ static bool faces_as_before(const csg_collapse_room *room)
     return true;
 }
 
-/* Neither field nor crossings need to be asked. */
+/* The field need not be asked; what else is there may be as near as rounding. */
 static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
 {
     csg_remesh *r = d->remesh;
@@ -353,7 +353,8 @@ static bool collapse_flat(csg_decimation *d, uint32_t from, uint32_t to)
     move_ring(room, r->at[to]);
     if (r->looks)
         room->look = r->looks[to];
-    if (!has_shape(d) || !faces_as_before(room) || !csg_decimation_can_hand_over(d, to, r->error))
+    if (!has_shape(d) || !faces_as_before(room) || !csg_decimation_can_hand_over(d, to, r->error) ||
+        crosses(d, from, to, false, NULL))
         return false;
     collapse(d, corner, from, to, r->at[to]);
     return true;
