@@ -77,12 +77,12 @@ static bool is_beyond(const plate *a, const csg_vec3 b[3], int shared, double cl
         low = d < low ? d : low;
         high = d > high ? d : high;
     }
-    double least = shared < 0 ? clear * a->norm : 0;
+    double least = clear * a->norm;
     return low > least || high < -least;
 }
 
-/* Beside a corner in common all is near: there only what is met counts, a side that is touched
- * too: the sheets beyond it would lie in one another. */
+/* Of two with a corner in common one side each can meet the other, that across from it: if only by
+ * a touch of the other's border, then their sheets lie in one another. */
 static bool cross(const plate *a, const plate *b, double clear)
 {
     int i = -1, k = -1, common = common_corners(a->ids, b->ids, &i, &k);
@@ -91,8 +91,8 @@ static bool cross(const plate *a, const plate *b, double clear)
     if (is_beyond(a, b->v, k, clear) || is_beyond(b, a->v, i, clear))
         return false;
     if (common == 1)
-        return pierces(a->v[(i + 1) % 3], a->v[(i + 2) % 3], b, 0) ||
-               pierces(b->v[(k + 1) % 3], b->v[(k + 2) % 3], a, 0);
+        return pierces(a->v[(i + 1) % 3], a->v[(i + 2) % 3], b, clear) ||
+               pierces(b->v[(k + 1) % 3], b->v[(k + 2) % 3], a, clear);
     for (k = 0; k < 3; k++)
         if (pierces(a->v[k], a->v[(k + 1) % 3], b, clear) ||
             pierces(b->v[k], b->v[(k + 1) % 3], a, clear))
