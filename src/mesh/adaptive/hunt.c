@@ -253,9 +253,30 @@ static void take_crossings(hunt *h, crossings *c)
     h->count = kept;
 }
 
+static double distance_between(const float a[3], const float b[3])
+{
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++)
+        square += ((double)a[axis] - (double)b[axis]) * ((double)a[axis] - (double)b[axis]);
+    return sqrt(square);
+}
+
+/* Whether the surface, between both ends of a crossing, is no farther than `near` from a place
+ * between them: by the lesser slope of both parts, since that of the whole field may be steeper by
+ * far; or since all of the way is so short. */
+static bool is_near_enough(const crossings *c, int i, const float at[3], double f, double near)
+{
+    const float from[3] = {c->from[0][i], c->from[1][i], c->from[2][i]};
+    const float to[3] = {c->to[0][i], c->to[1][i], c->to[2][i]};
+    double before = fabs((double)c->before[i] - f) / fmax(distance_between(from, at), 1e-30);
+    double after = fabs((double)c->after[i] - f) / fmax(distance_between(at, to), 1e-30);
+    return fabs(f) <= near * fmin(before, after) || distance_between(from, to) <= near;
+}
+
 /* One step closer for each crossing: by the secant, or, every other time, by halves, since the
- * field has kinks. Those whose value is near enough are put into `out`, the others stay. */
-static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, float near_enough,
+ * field has kinks. Those that are near enough to the surface are put into `out`, the others stay.
+ */
+static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, double near,
                         csg_hunted *out)
 {
     int kept = 0, n = c->count, padded = (n + CSG_LANES - 1) / CSG_LANES * CSG_LANES;
@@ -270,7 +291,8 @@ static void come_closer(csg_sheet_probe *p, hunt *h, crossings *c, bool halve, f
     p->evaluations += (uint64_t)n;
     for (int i = 0; i < n; i++) {
         h->f[i] = within_band(h, h->f[i]);
-        if (fabsf(h->f[i]) <= near_enough) {
+        const float place[3] = {h->x[i], h->y[i], h->z[i]};
+        if (is_near_enough(c, i, place, (double)h->f[i], near)) {
             unsigned cell[3];
             cell_of(h, i, cell);
             out->at[out->count] = csg_vec3_make((double)h->x[i], (double)h->y[i], (double)h->z[i]);
@@ -332,7 +354,6 @@ uint8_t csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick
         return 0;
     h.least = (float)((kind == ONE_CREASE ? CREASE_DEPTH : DEPTH) * tolerance *
                       (double)b->field->tape.lipschitz);
-    float near_enough = (float)(DEPTH * tolerance * (double)b->field->tape.lipschitz);
     h.band = csg_bricks_band(b, brick->level);
     place_lines(&h, b, brick);
     ask_between(p, &h, f);
@@ -343,6 +364,6 @@ uint8_t csg_hunt(csg_sheet_probe *p, const csg_bricks *b, const csg_brick *brick
     if (kind == ANYTHING && h.cells)
         h.cells &= (uint8_t)~csg_hunt_leaves(p, b, brick, tolerance, h.cells, out);
     for (int step = 0; step < STEPS && c.count && h.cells; step++)
-        come_closer(p, &h, &c, step % 2 == 1, near_enough, out);
+        come_closer(p, &h, &c, step % 2 == 1, DEPTH * tolerance, out);
     return (uint8_t)(cells & ~h.cells);
 }
