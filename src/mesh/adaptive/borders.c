@@ -22,13 +22,17 @@ static void want_divided(csg_cell_loop *w, const csg_shell *s, unsigned cells)
 /* ---- simple ------------------------------------------------------------------------------------
  */
 
+/* Of the finest cells: where leaves are as large as that several polygons may stay beside finer
+ * ones. Smaller ones have wedges thinner than they are, of which their corners see crumbs, while
+ * the finest make one edge of it: models/bottle_cap had a crumb with leaves half as large. */
+enum { LEAST_SEVERAL = 8 };
+
 /* Several polygons beside finer leaves: whether they keep apart is seen when their vertices are
- * known. Not so where cells are nearly the finest: of a wedge that is thinner than they are their
- * corners see crumbs, and the finest make one edge of it. */
+ * known. */
 static bool may_keep_apart(const csg_cell_at_hand *c)
 {
     return c->is_border && c->polygons.count <= CSG_JUDGED_MOST_PIECES &&
-           c->shell->brick->level + 1u < c->loop->x->bricks->finest;
+           csg_bricks_cell(c->loop->x->bricks, c->shell->brick->level) >= LEAST_SEVERAL;
 }
 
 static bool want_simple(csg_cell_at_hand *c)
