@@ -26,10 +26,12 @@ bool csg_graph_find(const csg_taylor_pieces *f, double half, double enough, csg_
 bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double half, double enough,
                       double *least, double *most);
 
-/* What the surface's area in the cube is at most, of any pieces whose gradients stay near one
- * vector all over the ball, by less than this share of it: no line along the vector meets a piece's
- * surface twice, so its area is no more than that of the cube as it is seen along the vector, over
- * the least cosine between the two. INFINITY: it is not known. */
+/* What the surface's area in the cube is at most, in faces of the cube, of any pieces whose
+ * gradients stay near one vector all over the ball, by less than this share of it: no line along
+ * the vector meets a piece's surface twice, so its area is no more than that of the cube as it is
+ * seen along the vector, over the least cosine between the two. INFINITY: it is not known. */
+double csg_graph_spread_most(const csg_taylor_pieces *f, double half, double stray_most);
+/* The same as an area. */
 double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most);
 
 /* The models on the cube's face x_axis = side * half, side: -1, 1, or 0, which is the square
@@ -56,7 +58,7 @@ typedef struct csg_graph_turned {
 bool csg_graph_arc(const csg_taylor_pieces *section, double half, const csg_graph_turned *turned,
                    double *least, double *most);
 
-/* The same at most, of any pieces, as csg_graph_area_most tells it. */
+/* The same at most, of any pieces, as csg_graph_spread_most tells it. */
 double csg_graph_arc_most(const csg_taylor_pieces *section, double half,
                           const csg_graph_turned *turned, double stray_most);
 

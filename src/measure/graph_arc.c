@@ -7,7 +7,6 @@
 #include <math.h>
 
 #include "base/geometry.h"
-#include "measure/enclosure.h"
 #include "measure/graph_field.h"
 
 enum { HALVED_MOST = 30 /* times, a patch that the curve leaves the cube over */ };
@@ -168,16 +167,6 @@ bool csg_graph_arc(const csg_taylor_pieces *section, double half, const csg_grap
 double csg_graph_arc_most(const csg_taylor_pieces *section, double half,
                           const csg_graph_turned *turned, double stray_most)
 {
-    double radius = csg_enclosure_radius(half), sum = 0;
-    for (int i = 0; i < section->count; i++) {
-        const csg_taylor *of = &section->of[i].f;
-        double length = csg_norm3(of->slope), stray = csg_taylor_stray(of, radius);
-        if (fabs(of->value) > csg_taylor_reach(of, radius))
-            continue;
-        if (!(stray < stray_most * length))
-            return INFINITY;
-        double seen = fabs(of->slope[0]) + fabs(of->slope[1]) + fabs(of->slope[2]);
-        sum += 2 * half * seen / sqrt(length * length - stray * stray);
-    }
-    return sum * (turned->at + half) * (1 + 1e-6);
+    return 2 * half * csg_graph_spread_most(section, half, stray_most) * (turned->at + half) *
+           (1 + 1e-6);
 }

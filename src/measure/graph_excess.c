@@ -183,7 +183,7 @@ bool csg_graph_excess(const csg_taylor_pieces *f, const double slope[3], double 
 }
 
 /* The field's surface is part of those of its pieces. */
-double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most)
+double csg_graph_spread_most(const csg_taylor_pieces *f, double half, double stray_most)
 {
     double radius = csg_enclosure_radius(half), sum = 0;
     for (int i = 0; i < f->count; i++) {
@@ -194,7 +194,12 @@ double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray
         if (!(stray < stray_most * length))
             return INFINITY;
         double seen = fabs(of->slope[0]) + fabs(of->slope[1]) + fabs(of->slope[2]);
-        sum += 4 * half * half * seen / sqrt(length * length - stray * stray) * (1 + 1e-9);
+        sum += seen / sqrt(length * length - stray * stray) * (1 + 1e-9);
     }
     return sum;
+}
+
+double csg_graph_area_most(const csg_taylor_pieces *f, double half, double stray_most)
+{
+    return 4 * half * half * csg_graph_spread_most(f, half, stray_most) * (1 + 1e-9);
 }

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-#include "failing.h"
-
 static const char TEXT[] = "difference() { cube(2, center = true); sphere(0.5); }\n";
 static const double VOLUME = 8 - 0.52359877559829887, DENSITY = 3;
 
@@ -33,29 +31,15 @@ static void assert_true_measures(const csgm_measures *m)
     }
 }
 
+static void check_refused(const csgm_measures *m, bool done)
+{
+    assert_int_equal(m->is_reached, done);
+    assert_true_measures(m);
+}
+
 static void test_any_allocation_may_fail(void **state)
 {
-    bool done = false;
-    int refused = 0;
-    for (long n = 0; !done; n++) {
-        failing f = {.left = n};
-        solid s;
-        csgm_context_options options = csgm_context_options_default();
-        options.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
-        if (open_solid(&s, options, TEXT) == CSGM_OK) {
-            csgm_measure_options measure = options_to(0.05);
-            csgm_measures m = csgm_measures_default();
-            csgm_status status = csgm_measure_field(s.context, s.field, &measure, &m);
-            done = status == CSGM_OK;
-            refused += !done;
-            assert_true(done || status == CSGM_ERR_MEMORY);
-            assert_int_equal(m.is_reached, done);
-            assert_true_measures(&m);
-        }
-        close_solid(&s);
-        assert_int_equal(f.live, 0);
-    }
-    assert_true(refused > 10);
+    assert_true(measure_with_refusals(TEXT, options_to(0.05), check_refused) > 10);
 }
 
 static void test_limits(void **state)

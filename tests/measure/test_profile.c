@@ -9,7 +9,6 @@
 #include <stdio.h>
 
 #include "base/random.h"
-#include "failing.h"
 #include "field/tape.h"
 #include "measure/axis.h"
 #include "scene/random_scene.h"
@@ -219,30 +218,18 @@ static void test_against_cubes(void **state)
     assert_true(tried > 5 * (int)test_times);
 }
 
+static void check_refused(const csgm_measures *m, bool done)
+{
+    assert_holds(m->volume, 61 * 4.0 / 3 * PI);
+    assert_holds(m->area, 164 * PI);
+}
+
 static void test_any_allocation_may_fail(void **state)
 {
-    bool done = false;
-    int refused = 0;
-    for (long n = 0; !done; n++) {
-        failing f = {.left = n};
-        solid s;
-        csgm_context_options options = csgm_context_options_default();
-        options.allocator = (csgm_allocator){failing_alloc, failing_release, &f};
-        if (open_solid(&s, options, "difference() { sphere(5); sphere(4); }") == CSGM_OK) {
-            csgm_measures m = csgm_measures_default();
-            csgm_measure_options how = csgm_measure_options_default();
-            how.tolerance = 0.05;
-            csgm_status status = csgm_measure_field(s.context, s.field, &how, &m);
-            done = status == CSGM_OK;
-            refused += !done;
-            assert_true(done || status == CSGM_ERR_MEMORY);
-            assert_holds(m.volume, 61 * 4.0 / 3 * PI);
-            assert_holds(m.area, 164 * PI);
-        }
-        close_solid(&s);
-        assert_int_equal(f.live, 0);
-    }
-    assert_true(refused > 5);
+    csgm_measure_options how = csgm_measure_options_default();
+    how.tolerance = 0.05;
+    assert_true(
+        measure_with_refusals("difference() { sphere(5); sphere(4); }", how, check_refused) > 5);
 }
 
 int main(int argc, char **argv)

@@ -73,11 +73,11 @@ static bool visit_near(csg_cell_loop *w, uint32_t worker, const csg_shell *s)
     csg_cut_polygon *fans[CSG_JUDGED_MOST_APEXES];
     csg_tape tape;
     unsigned far = 0;
+    if (!s->has_finer || s->brick->level == w->x->bricks->finest)
+        return true;
     room->piece_count = 0;
     memset(room->first_piece, 0, sizeof room->first_piece);
     memset(room->end_piece, 0, sizeof room->end_piece);
-    if (!s->has_finer || s->brick->level == w->x->bricks->finest)
-        return true;
     if (!csg_cells_each(w, worker, s, set_border_aside))
         return false;
     csg_cells_find_apexes(w, worker, s);

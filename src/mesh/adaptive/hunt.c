@@ -255,10 +255,7 @@ static void take_crossings(hunt *h, crossings *c)
 
 static double distance_between(const float a[3], const float b[3])
 {
-    double square = 0;
-    for (int axis = 0; axis < 3; axis++)
-        square += ((double)a[axis] - (double)b[axis]) * ((double)a[axis] - (double)b[axis]);
-    return sqrt(square);
+    return csg_vec3_norm(csg_vec3_sub(csg_vec3_from_floats(a), csg_vec3_from_floats(b)));
 }
 
 /* Whether the surface, between both ends of a crossing, is no farther than `near` from a place

@@ -101,11 +101,6 @@ bool csg_judge_may_fail(const csg_judge *judge, double cell)
     return cell <= FAILURE * judge->tolerance;
 }
 
-bool csg_judge_may_have_several(const csg_judge *judge, double cell)
-{
-    return cell <= SEVERAL * judge->tolerance;
-}
-
 csg_sheet_probe csg_judge_probe(const csg_judge *judge, const csg_bricks *b, const csg_brick *brick,
                                 csg_judge_room *room, csg_tape *tape)
 {
@@ -494,7 +489,7 @@ static uint8_t find_bad(brick_work *w)
             w->bad |= 1u << cell;
         if (!(w->bad >> cell & 1))
             keep_triangles(room, cell);
-        else if (room->polygons[cell].count > 1 && csg_judge_may_have_several(w->judge, w->cell) &&
+        else if (room->polygons[cell].count > 1 && w->cell <= SEVERAL * w->judge->tolerance &&
                  !pierced)
             w->bad &= ~(1u << cell);
     }

@@ -64,8 +64,6 @@ bool csg_judge_hear(void *user, csg_brick *brick, csg_record_reader *reader, siz
 
 /* Whether a cell is so small that its sheets may fail to meet. */
 bool csg_judge_may_fail(const csg_judge *judge, double cell);
-/* Whether it is so small that several polygons may be far from the surface. */
-bool csg_judge_may_have_several(const csg_judge *judge, double cell);
 /* Whether the pieces of a cell, of that size, are on their own sides of each other: then they do
  * not meet. */
 bool csg_judge_are_apart(const csg_judge_room *room, unsigned cell, double size);
