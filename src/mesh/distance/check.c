@@ -125,7 +125,8 @@ typedef enum verdict { OPEN, SETTLED, FAR } verdict;
 /* Of a piece. */
 typedef struct answer {
     verdict what;
-    double excess; /* where it is open: by what factor gradients stray too much */
+    double excess; /* where it is open: by what factor gradients stray too much, or the square of
+                      that by which it is too large */
 } answer;
 
 /* What is looked at of it. */
@@ -164,10 +165,18 @@ static verdict settle_by_cone(const proof *p, const settler *s, const piece *one
     return OPEN;
 }
 
+/* Its square is the number of parts that settles_nearby() may tell, whatever the gradients are. */
+static double times_too_large(const proof *p, disc d)
+{
+    static const double SMALL = 0.6; /* of the error */
+    return d.radius / (SMALL * p->error);
+}
+
 /* Of what its gradients did not settle. */
 static verdict settle_otherwise(const proof *p, settler *s, const piece *one, const look *l)
 {
     static const double STEPS_REACH = 6; /* of the error */
+    static const double NEARBY = 0.8;    /* of what is left beside the piece */
     double steepest = (double)s->tape.lipschitz;
     if (l->is_known && l->gradients.longest < steepest)
         steepest = l->gradients.longest;
@@ -188,8 +197,8 @@ static verdict settle_otherwise(const proof *p, settler *s, const piece *one, co
     if (!inward.fails)
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(one->at[1], one->at[0]));
-    return l->d.radius <= 0.5 * p->error && settles_nearby(p, s, l->d, one->normal, side) ? SETTLED
-                                                                                          : OPEN;
+    bool may_be_nearby = fabs(value) < NEARBY * steepest * (p->error - l->d.radius);
+    return may_be_nearby && settles_nearby(p, s, l->d, one->normal, side) ? SETTLED : OPEN;
 }
 
 /* Up to eight pieces for which the settler's tape holds. */
@@ -233,6 +242,8 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
         s->by_cone += answers[i]->what == SETTLED;
         if (answers[i]->what == OPEN)
             answers[i]->what = settle_otherwise(p, s, pieces[i], &looks[i]);
+        double times = times_too_large(p, looks[i].d);
+        answers[i]->excess = fmin(answers[i]->excess, times * times);
     }
 }
 
