@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * No mesh runs through itself: seeded random scenes of 1 to 60 primitives, sharp and with all
- * blends, with sharp features and without, against CGAL's exact search. The meshes are closed
- * oriented 2-manifolds too.
+ * blends, with sharp features and without, against CGAL's exact search; and some of cells that
+ * follow the shape, thinned out as drafts. The meshes are closed oriented 2-manifolds too.
  *
  * Arguments: how many scenes (default 30), the first one's seed (default 0). "-v" behind them: goes
- * on after a crossing and tells of each.
+ * on after a crossing and tells of each; "thinned": all scenes are thinned out, and nothing else.
  */
 #include "base/orient.h"
 #include "mesh/features/exact.h"
@@ -17,7 +17,7 @@
 #include <string.h>
 
 static unsigned scene_count = 30, first_seed = 0;
-static bool goes_on = false;
+static bool goes_on = false, only_thinned = false;
 
 #ifdef HAVE_CGAL
 
@@ -161,14 +161,20 @@ static csgm_mesh_options options_of(const mesh_case *c, unsigned seed, csgm_feat
     return options;
 }
 
-static long long crossings_of_scene(unsigned seed, csgm_features features, uint64_t *triangles)
+static long long crossings_of_scene(unsigned seed, csgm_features features, bool is_thinned,
+                                    uint64_t *triangles)
 {
     mesh_case c;
     char what[64];
-    snprintf(what, sizeof what, "scene %u%s", seed,
-             features == CSGM_FEATURES_SHARP ? "" : ", smooth");
+    const char *how = is_thinned ? ", thinned out" : "";
+    snprintf(what, sizeof what, "scene %u%s%s", seed,
+             features == CSGM_FEATURES_SHARP ? "" : ", smooth", how);
     compile_scene(&c, seed);
     csgm_mesh_options options = options_of(&c, seed, features);
+    if (is_thinned) {
+        options.resolution = 0;
+        options.quality = CSGM_QUALITY_DRAFT;
+    }
     mesh_build_closed(&c, &options, what);
     long long count = crossings_of(c.mesh, what);
     *triangles += c.mesh->triangle_count;
@@ -179,15 +185,31 @@ static long long crossings_of_scene(unsigned seed, csgm_features features, uint6
 static void test_random_scenes(void **state)
 {
     uint64_t triangles = 0, bad = 0;
-    for (unsigned seed = first_seed; seed < first_seed + scene_count; seed++) {
-        long long sharp = crossings_of_scene(seed, CSGM_FEATURES_SHARP, &triangles);
-        long long smooth = crossings_of_scene(seed, CSGM_FEATURES_SMOOTH, &triangles);
+    for (unsigned seed = first_seed; seed < first_seed + scene_count && !only_thinned; seed++) {
+        long long sharp = crossings_of_scene(seed, CSGM_FEATURES_SHARP, false, &triangles);
+        long long smooth = crossings_of_scene(seed, CSGM_FEATURES_SMOOTH, false, &triangles);
         bad += sharp || smooth;
         if (!goes_on)
             assert_int_equal(bad, 0);
     }
-    if (first_seed == 0) /* a few others may be small or empty */
+    if (first_seed == 0 && !only_thinned) /* a few others may be small or empty */
         assert_true(triangles > 1000 * (uint64_t)scene_count);
+    assert_int_equal(bad, 0);
+}
+
+/* Collapses must not run a sheet through another one either. */
+static void test_thinned_scenes(void **state)
+{
+    static const unsigned ONE_OF = 8; /* it takes longer */
+    unsigned step = only_thinned ? 1 : ONE_OF;
+    uint64_t triangles = 0, bad = 0;
+    for (unsigned seed = first_seed; seed < first_seed + scene_count; seed += step) {
+        bad += crossings_of_scene(seed, CSGM_FEATURES_SHARP, true, &triangles) > 0;
+        if (!goes_on)
+            assert_int_equal(bad, 0);
+    }
+    if (first_seed == 0)
+        assert_true(triangles > 100 * (uint64_t)(scene_count / step));
     assert_int_equal(bad, 0);
 }
 
@@ -197,12 +219,14 @@ int main(int argc, char **argv)
         scene_count = (unsigned)atoi(argv[1]);
     if (argc > 2)
         first_seed = (unsigned)atoi(argv[2]);
-    goes_on = argc > 3;
+    for (int i = 3; i < argc; i++) {
+        goes_on |= !strcmp(argv[i], "-v");
+        only_thinned |= !strcmp(argv[i], "thinned");
+    }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_planted),
-        cmocka_unit_test(test_exact),
-        cmocka_unit_test(test_pierced),
-        cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_planted),        cmocka_unit_test(test_exact),
+        cmocka_unit_test(test_pierced),        cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_thinned_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
