@@ -91,6 +91,11 @@ static inline void csg_box_extend(csg_box *box, csg_vec3 p)
     box->max.y = p.y > box->max.y ? p.y : box->max.y;
     box->max.z = p.z > box->max.z ? p.z : box->max.z;
 }
+static inline bool csg_box_holds(csg_box box, csg_vec3 p)
+{
+    return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
+           p.z >= box.min.z && p.z <= box.max.z;
+}
 csg_box csg_box_intersect(csg_box a, csg_box b);
 csg_box csg_box_grow(csg_box box, double by); /* empty stays empty; by >= 0, may be infinite */
 csg_vec3 csg_box_center(csg_box box);

@@ -86,3 +86,12 @@ bool csg_shape_normals(const csg_shape *shape, csg_vec3 c, double radius,
 {
     return shape->operations->normals(shape, c, radius, take, user);
 }
+
+void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
+                       csg_shape_balls *balls)
+{
+    for (size_t i = 0; i < balls->count; i++)
+        balls->may_crease[i] = !shape->operations->creases;
+    if (shape->operations->creases)
+        shape->operations->creases(shape, crease, balls);
+}

@@ -24,7 +24,7 @@ typedef struct csg_shape_cell {
     double reach;
 } csg_shape_cell;
 
-enum { CSG_SHAPE_MOST_NEAR = 8 };
+enum { CSG_SHAPE_MOST_NEAR = 8, CSG_SHAPE_MOST_BALLS = 64 };
 
 /* What of a shape's geometry can matter in a cell, as numbers of its tree. */
 typedef struct csg_shape_near {
@@ -35,6 +35,22 @@ typedef struct csg_shape_near {
 
 /* Takes a unit vector; false ends what gives it. */
 typedef bool csg_shape_take_normal(void *user, csg_vec3 inward);
+
+/* Which edges are creases. Angles as 1 - cos. Left out of those by which the surface turns by more
+ * than `least` are blunt ones beside which it goes on turning: by less than `blunt` there, and on
+ * both sides again by half as much and more, and by less than `blunt`, nearer than `narrow`.
+ * Normals that differ by more than `most_turn` count as a crease, whatever lies between them. */
+typedef struct csg_shape_crease {
+    double least, blunt, narrow, most_turn;
+} csg_shape_crease;
+
+/* Balls of one radius that lie together, in the shape's own frame. */
+typedef struct csg_shape_balls {
+    csg_vec3 center[CSG_SHAPE_MOST_BALLS];
+    bool may_crease[CSG_SHAPE_MOST_BALLS];
+    size_t count;
+    double radius;
+} csg_shape_balls;
 
 /* What each kind brings along. */
 typedef struct csg_shape_operations {
@@ -51,6 +67,7 @@ typedef struct csg_shape_operations {
     uint64_t (*hash)(const csg_shape *shape);
     bool (*normals)(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
                     void *user);
+    void (*creases)(const csg_shape *shape, const csg_shape_crease *crease, csg_shape_balls *balls);
 } csg_shape_operations;
 
 /* The first member of the struct of each kind. */
@@ -95,6 +112,12 @@ uint32_t csg_shape_narrow(const csg_shape *shape, const csg_shape_near *among,
  * that cross others, lie within the solid, or are needles). */
 bool csg_shape_normals(const csg_shape *shape, csg_vec3 c, double radius,
                        csg_shape_take_normal *take, void *user);
+
+/* For each ball whether the surface has creases there, or may have some. Where it has none, the
+ * gradients at points whose nearest places are in the ball differ by no more than `most_turn`, and
+ * jump by no more than `least` but at blunt edges that are left out. */
+void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
+                       csg_shape_balls *balls);
 
 /* A stable hash of the geometry, for printing and comparing. */
 uint64_t csg_shape_hash(const csg_shape *shape);

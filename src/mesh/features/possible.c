@@ -7,9 +7,9 @@
  * places only such count as the surface can reach: where f = 0 an operand of a union is at least
  * minus the widths of the blends, one of an intersection at most their sum.
  *
- * Where all operators are sharp and all leaves primitives or formulas, cells are told apart: the
- * field is that of one leaf at a time, and turns into that of another only where both are near
- * zero.
+ * Where all operators are sharp and all leaves primitives, formulas or shapes, cells are told
+ * apart: the field is that of one leaf at a time, and turns into that of another only where both
+ * are near zero.
  *
  * A fillet much finer than a cell looks like a crease. Whether it is taken for one must not depend
  * on what pruning has left, so only blends as wide as a cell pass here.
@@ -31,6 +31,9 @@ static const float HALF_DIAGONAL = 0.8661f;
  * than where a tip is looked for (25). The shortest bracket around a jump is 512 times as short,
  * and from end to end of it the gradient turns by less than a jump's three degrees. */
 static const double MOST_TURN = 0.4;
+/* Cells: creases nearer to each other run through one polygon, or through one and the next, and a
+ * polygon has one apex. */
+static const double NARROW = 2;
 
 typedef struct ball {
     float at[3], radius;
@@ -206,13 +209,63 @@ static void gather_cells(const csg_feature_probe *probe, int octant, part_cells 
     }
 }
 
-/* Whether at each point the field is the value of one primitive or formula. */
+/* ---- shapes ----------------------------------------------------------------------------------
+ */
+
+/* Whether a frame keeps angles, but for rounding. */
+static bool keeps_angles(const csg_tape_node *node, const float *frame)
+{
+    static const float SAME = 1e-4f;
+    float one = frame[0] * frame[0] + frame[1] * frame[1] + frame[2] * frame[2];
+    bool keeps = true;
+    for (int i = 0; i < 3 && node->frame != CSG_FRAME_OFFSET; i++)
+        for (int k = 0; k <= i; k++) {
+            const float *a = frame + 3 * i, *b = frame + 3 * k;
+            float product = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            keeps = keeps && fabsf(product - (i == k ? one : 0)) <= SAME * one;
+        }
+    return keeps;
+}
+
+/* In which cells a shape may crease. A segment of a polygon lies in one face of its cell, between
+ * two points of the surface, so none of it is farther than half a face's diagonal from one of them,
+ * nor is the place of the surface that is nearest to it: all of these are in a ball around the
+ * cell. Facets of a scan that are as small as cells and turn as little as a smooth surface may are
+ * one: their blunt edges are no creases (csg_shape_crease). */
+static void find_shape_creases(const csg_tape *tape, const csg_tape_node *node, float cell,
+                               const part_cells *cells, csg_shape_balls *balls)
+{
+    static const float HALF_FACE = 0.7072f; /* sqrt(2) / 2, rounded up */
+    const float *parameters = tape->parameters + node->parameters;
+    const float *frame = parameters + CSG_LEAF_FRAME;
+    float scale = 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
+    balls->count = cells->count;
+    balls->radius = 1.01 * (double)((HALF_DIAGONAL + HALF_FACE) * cell * scale);
+    if (node->warp || parameters[CSG_LEAF_RAISE] != 0 || !keeps_angles(node, frame)) {
+        memset(balls->may_crease, true, sizeof balls->may_crease);
+        return;
+    }
+    const csg_shape_crease crease = {.least = (double)CSG_FEATURE_LEAST_JUMP,
+                                     .blunt = (double)CSG_FEATURE_FADING,
+                                     .narrow = NARROW * (double)(cell * scale),
+                                     .most_turn = 0.5 * MOST_TURN * MOST_TURN};
+    for (size_t i = 0; i < cells->count; i++) {
+        const float at[3] = {cells->x[i], cells->y[i], cells->z[i]};
+        float q[3];
+        to_own(node, frame, at, q);
+        balls->center[i] = csg_vec3_from_floats(q);
+    }
+    csg_shape_creases(csg_tape_shape(tape, node), &crease, balls);
+}
+
+/* Whether at each point the field is the value of one primitive, formula or shape. */
 static bool is_one_at_a_time(const csg_block_part *part)
 {
     for (uint32_t i = 0; i < part->node_count; i++) {
         const csg_tape_node *node = &part->nodes[i];
         bool is_sharp = node->join == CSG_JOIN_NONE || node->join_blend == CSG_BLEND_SHARP;
-        bool is_known = (csg_op_is_primitive(node->op) || node->op == CSG_OP_FIELD) && !node->warp;
+        bool is_known = !node->warp && (csg_op_is_primitive(node->op) || node->op == CSG_OP_FIELD ||
+                                        node->op == CSG_OP_SHAPE);
         bool is_operator = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (!is_sharp || !(is_known || is_operator))
             return false;
@@ -267,15 +320,31 @@ static bool add_near(const csg_tape *tape, part_cells *cells, size_t i, near_lea
     return false;
 }
 
+/* Values of one leaf at the cells' centres. One that is alone is what the field is in all of them.
+ */
+static void find_values(csg_feature_probe *probe, const csg_tape *leaf, bool is_alone,
+                        part_cells *cells)
+{
+    if (is_alone) {
+        memset(cells->f, 0, sizeof cells->f);
+        return;
+    }
+    probe->marching->kernel->values(leaf, cells->x, cells->y, cells->z, cells->count, cells->f,
+                                    probe->scratch, probe->scratch_floats);
+    probe->evaluations += cells->count;
+}
+
 /* A segment of a polygon runs between two points of the surface in one cell, so that no point of it
  * is farther than half a diagonal from one of them, and f there no farther from zero than it can
  * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
  */
 static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool still,
-                       part_cells *cells)
+                       bool is_alone, part_cells *cells)
 {
     csg_tape_node alone = *node;
     csg_tape tape = probe->marching->field->tape;
+    csg_shape_balls balls;
+    bool is_shape = node->op == CSG_OP_SHAPE;
     float cell = (float)probe->marching->lattice->cell_size;
     float slack = probe->marching->noise + tape.waver;
     float off = 1.01f * HALF_DIAGONAL * cell * tape.lipschitz + slack;
@@ -283,16 +352,18 @@ static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool
     alone.join = CSG_JOIN_NONE;
     tape.nodes = &alone;
     tape.count = 1;
-    probe->marching->kernel->values(&tape, cells->x, cells->y, cells->z, cells->count, cells->f,
-                                    probe->scratch, probe->scratch_floats);
-    probe->evaluations += cells->count;
+    find_values(probe, &tape, is_alone, cells);
+    if (is_shape)
+        find_shape_creases(&tape, node, cell, cells, &balls);
     for (size_t i = 0; i < cells->count; i++) {
         if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
             continue;
         ball at = {{cells->x[i], cells->y[i], cells->z[i]}, HALF_DIAGONAL * cell};
         near_leaf leaf = {node, cells->f[i]};
-        cells->may_crease[i] = add_near(&tape, cells, i, leaf, &at, slack) ||
-                               leaf_may_crease(&tape, &alone, at, (csg_band){-off, off}, still);
+        cells->may_crease[i] =
+            add_near(&tape, cells, i, leaf, &at, slack) ||
+            (is_shape ? balls.may_crease[i]
+                      : leaf_may_crease(&tape, &alone, at, (csg_band){-off, off}, still));
     }
 }
 
@@ -306,7 +377,7 @@ static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part
         cells.x[i] = cells.x[0], cells.y[i] = cells.y[0], cells.z[i] = cells.z[0];
     for (uint32_t i = 0; i < part->node_count && !all && cells.count; i++)
         if (csg_op_is_leaf(part->nodes[i].op))
-            count_leaf(probe, &part->nodes[i], still, &cells);
+            count_leaf(probe, &part->nodes[i], still, part->node_count == 1, &cells);
     for (size_t i = 0; i < cells.count; i++)
         if (all || cells.may_crease[i]) {
             rows[cells.cell[i] / CSG_BLOCK_EDGE] |= (uint8_t)(1u << cells.cell[i] % CSG_BLOCK_EDGE);

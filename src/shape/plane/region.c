@@ -318,8 +318,14 @@ static uint32_t narrow(const csg_shape *shape, const csg_shape_near *among,
                               cell->reach, items, CSG_SHAPE_MOST_NEAR);
 }
 
-static const csg_shape_operations operations = {destroy, sample, values, gradients,
-                                                narrow,  hash,   normals};
+static const csg_shape_operations operations = {.destroy = destroy,
+                                                .sample = sample,
+                                                .values = values,
+                                                .gradients = gradients,
+                                                .narrow = narrow,
+                                                .hash = hash,
+                                                .normals = normals,
+                                                .creases = NULL};
 
 /* Below that squares do not overflow. */
 static bool is_in_range(const csg_outline *outline)

@@ -4,8 +4,8 @@
  * between them. Beside a plain triangle (tree_plain.c) the side tells, and beside an edge of two
  * the sum of their normals (Baerentzen and Aanaes 2005). Along x only the stretch between two
  * points is searched. Winding numbers are exact, so every way gives the same. Points nearer than
- * LEAST to a triangle are on it as far as anybody can tell; their sign is that of the lattice point
- * next to them.
+ * CSG_POLYHEDRON_LEAST to a triangle are on it as far as anybody can tell; their sign is that of
+ * the lattice point next to them.
  */
 #include "shape/polyhedra/polyhedron.h"
 
@@ -15,28 +15,9 @@
 #include "shape/polyhedra/convex.h"
 #include "shape/polyhedra/packet.h"
 #include "shape/polyhedra/repair.h"
-#include "shape/polyhedra/tree.h"
-
-typedef struct polyhedron {
-    csg_shape shape;
-    csg_triangle_frame frame;
-    csg_triangles mended;
-    csg_tree tree;
-    uint64_t hash;
-    bool is_convex;
-    uint32_t (*beside)[3]; /* per triangle in the tree, along each edge: the other triangle there */
-    atomic_uchar *plain; /* per triangle in the tree: whether it is (csg_tree_plain_group), once it
-                            was asked */
-} polyhedron;
-
-enum { PLAIN_UNKNOWN, PLAIN_NO, PLAIN_YES };
+#include "shape/polyhedra/solid.h"
 
 static const csg_shape_operations OPERATIONS;
-
-static const polyhedron *as_polyhedron(const csg_shape *shape)
-{
-    return (const polyhedron *)shape;
-}
 
 /* ---- field ------------------------------------------------------------------------------------
  */
@@ -50,7 +31,7 @@ typedef struct known_point {
 
 /* Goes from point to point. */
 typedef struct walker {
-    const polyhedron *solid;
+    const csg_polyhedron *solid;
     csg_tree_parts parts;
     double limit;          /* frame units: up to there distances are exact */
     known_point last, row; /* the last point, and the last that did not share a row with its last */
@@ -67,36 +48,6 @@ typedef struct found {
 
 static const uint32_t ROOT = 0;
 
-/* More than points and their feet are moved by rounding. */
-static const double LEAST = 0x1p-36;
-
-/* Threads may find it twice; they find the same. */
-static bool find_plain(const polyhedron *solid, uint32_t place)
-{
-    uint32_t first = place - place % CSG_TREE_GROUP;
-    uint32_t plain = csg_tree_plain_group(&solid->tree, solid->beside, first);
-    for (uint32_t i = 0; i < CSG_TREE_GROUP && first + i < solid->tree.count; i++)
-        atomic_store_explicit(&solid->plain[first + i], plain >> i & 1 ? PLAIN_YES : PLAIN_NO,
-                              memory_order_relaxed);
-    return plain >> (place - first) & 1;
-}
-
-static bool is_plain(const polyhedron *solid, uint32_t place)
-{
-    int known = atomic_load_explicit(&solid->plain[place], memory_order_relaxed);
-    return known == PLAIN_UNKNOWN ? find_plain(solid, place) : known == PLAIN_YES;
-}
-
-/* Edges that count as convex may bend the other way by 2^-30 (convex.c): farther from the surface
- * than this all triangles of a convex solid but needles are as good as plain. */
-static const double CONVEX_BEYOND = 0x1p-28;
-
-static bool is_plain_beyond(const polyhedron *solid, uint32_t place, double free)
-{
-    return solid->is_convex && free > CONVEX_BEYOND ? !solid->tree.triangles[place].is_needle
-                                                    : is_plain(solid, place);
-}
-
 /* Whether no triangle is between them. */
 static bool is_free(const known_point *from, csg_vec3 p, double free)
 {
@@ -110,18 +61,12 @@ static bool shares_row(const known_point *from, csg_vec3 p)
     return from->is_set && from->at.y == p.y && from->at.z == p.z;
 }
 
-static bool box_holds(csg_box box, csg_vec3 p)
-{
-    return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
-           p.z >= box.min.z && p.z <= box.max.z;
-}
-
 static csg_vec3 outward(const csg_tree_triangle *t)
 {
     return csg_vec3_normalize(csg_vec3_cross(t->ab, t->ac));
 }
 
-static void locate(const polyhedron *solid, found *f)
+static void locate(const csg_polyhedron *solid, found *f)
 {
     if (!f->is_located)
         f->foot = csg_triangle_locate(&solid->tree.triangles[f->nearest.place], f->at, &f->part);
@@ -130,19 +75,19 @@ static void locate(const polyhedron *solid, found *f)
 
 /* The winding number at a point, from the triangle that is nearest; false: it does not tell. free:
  * no triangle within. */
-static bool read_side(const polyhedron *solid, found *f, double free, int *winding)
+static bool read_side(const csg_polyhedron *solid, found *f, double free, int *winding)
 {
-    /* cosines are off by less: the foot is more than LEAST away */
+    /* cosines are off by less: the foot is more than CSG_POLYHEDRON_LEAST away */
     static const double UNCERTAIN = 1e-3;
     /* No corner of a convex solid is nearest to a point within. Where rounding makes a corner of a
      * foot in the face, the way there is the normal. */
     static const double ALONG = 0.9;
     uint32_t place = f->nearest.place;
     const csg_tree_triangle *t = &solid->tree.triangles[place];
-    if (!is_plain_beyond(solid, place, free))
+    if (!csg_polyhedron_is_plain_beyond(solid, place, free))
         return false;
     locate(solid, f);
-    if (f->part == CSG_PART_CORNER && !(solid->is_convex && free > CONVEX_BEYOND))
+    if (f->part == CSG_PART_CORNER && !(solid->is_convex && free > CSG_POLYHEDRON_CONVEX_BEYOND))
         return false;
     if (f->part == CSG_PART_FACE) {
         *winding = csg_vec3_dot(csg_vec3_sub(f->at, t->a), csg_vec3_cross(t->ab, t->ac)) < 0;
@@ -154,7 +99,7 @@ static bool read_side(const polyhedron *solid, found *f, double free, int *windi
         return csg_vec3_dot(away, outward(t)) > -ALONG * csg_vec3_norm(away);
     }
     uint32_t other = solid->beside[place][f->part];
-    if (other == CSG_TREE_NONE || !is_plain_beyond(solid, other, free))
+    if (other == CSG_TREE_NONE || !csg_polyhedron_is_plain_beyond(solid, other, free))
         return false;
     csg_vec3 normal = csg_vec3_add(outward(t), outward(&solid->tree.triangles[other]));
     double along = csg_vec3_dot(away, normal);
@@ -195,9 +140,9 @@ static void keep_point(known_point *known, csg_vec3 p, double free, int winding)
 static bool is_inside(walker *w, found *f, double distance)
 {
     csg_vec3 p = f->at;
-    if (!box_holds(w->solid->tree.box, p))
+    if (!csg_box_holds(w->solid->tree.box, p))
         return false;
-    double free = fmin(distance, w->limit) * (1 - 0x1p-30) - LEAST;
+    double free = fmin(distance, w->limit) * (1 - 0x1p-30) - CSG_POLYHEDRON_LEAST;
     int winding = find_winding(w, f, free, distance < w->limit);
     if (!shares_row(&w->last, p))
         keep_point(&w->row, p, free, winding);
@@ -220,7 +165,7 @@ static found look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest)
     return f;
 }
 
-static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
+static walker begin_walk(const csg_polyhedron *solid, const csg_shape_near *near)
 {
     walker w = {
         .solid = solid, .parts = {&ROOT, 1, INFINITY}, .limit = INFINITY, .hint = CSG_TREE_NONE};
@@ -231,13 +176,7 @@ static walker begin_walk(const polyhedron *solid, const csg_shape_near *near)
     return w;
 }
 
-/* So far away that the solid is a point; also whatever is not a number. */
-static bool is_far(csg_vec3 p)
-{
-    return !(fabs(p.x) < 0x1p60 && fabs(p.y) < 0x1p60 && fabs(p.z) < 0x1p60);
-}
-
-static double far_value(const polyhedron *solid, csg_vec3 p, csg_vec3 *gradient)
+static double far_value(const csg_polyhedron *solid, csg_vec3 p, csg_vec3 *gradient)
 {
     double largest = fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z)));
     csg_vec3 part = csg_vec3_scale(p, 1 / largest);
@@ -249,7 +188,7 @@ static double far_value(const polyhedron *solid, csg_vec3 p, csg_vec3 *gradient)
     return -csg_vec3_norm(part) * largest * solid->frame.unscale;
 }
 
-static double signed_distance(const polyhedron *solid, const found *f)
+static double signed_distance(const csg_polyhedron *solid, const found *f)
 {
     double distance = sqrt(f->nearest.squared) * solid->frame.unscale;
     return f->inside || distance == 0 ? distance : -distance;
@@ -257,13 +196,13 @@ static double signed_distance(const polyhedron *solid, const found *f)
 
 /* Of a face: its normal, which is exact however near the point is. Of edges and corners: away from
  * the foot. On the surface: into the solid. */
-static csg_vec3 gradient_of(const polyhedron *solid, found *f)
+static csg_vec3 gradient_of(const csg_polyhedron *solid, found *f)
 {
     const csg_tree_triangle *t = &solid->tree.triangles[f->nearest.place];
     locate(solid, f);
     csg_vec3 away = csg_vec3_sub(f->at, f->foot);
     csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
-    if (f->nearest.squared < LEAST * LEAST)
+    if (f->nearest.squared < CSG_POLYHEDRON_LEAST * CSG_POLYHEDRON_LEAST)
         return inward;
     double sign = f->inside ? 1 : -1;
     if (f->part == CSG_PART_FACE)
@@ -273,9 +212,9 @@ static csg_vec3 gradient_of(const polyhedron *solid, found *f)
 
 static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gradient)
 {
-    const polyhedron *solid = as_polyhedron(shape);
+    const csg_polyhedron *solid = csg_polyhedron_of(shape);
     csg_vec3 at = csg_triangle_frame_enter(&solid->frame, p), ignored;
-    if (is_far(at))
+    if (csg_polyhedron_is_far(at))
         return far_value(solid, at, gradient ? gradient : &ignored);
     walker w = begin_walk(solid, NULL);
     found f = look_up(&w, at, find_nearest(&w, at));
@@ -284,7 +223,7 @@ static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gr
     return signed_distance(solid, &f);
 }
 
-static csg_vec3 enter_float(const polyhedron *solid, float x, float y, float z)
+static csg_vec3 enter_float(const csg_polyhedron *solid, float x, float y, float z)
 {
     return csg_triangle_frame_enter(&solid->frame, csg_vec3_make((double)x, (double)y, (double)z));
 }
@@ -299,24 +238,25 @@ typedef struct packet {
 } packet;
 
 /* False: some point is far away. */
-static bool enter_packet(const polyhedron *solid, const float *x, const float *y, const float *z,
-                         packet *k)
+static bool enter_packet(const csg_polyhedron *solid, const float *x, const float *y,
+                         const float *z, packet *k)
 {
     bool is_near = true;
     for (size_t i = 0; i < k->count; i++) {
         k->at[i] = enter_float(solid, x[i], y[i], z[i]);
-        is_near &= !is_far(k->at[i]);
+        is_near &= !csg_polyhedron_is_far(k->at[i]);
     }
     return is_near;
 }
 
 /* Here and below gradients may be NULL. */
-static void sample_far(const polyhedron *solid, const packet *k, float *out, csg_vec3 *gradients)
+static void sample_far(const csg_polyhedron *solid, const packet *k, float *out,
+                       csg_vec3 *gradients)
 {
     walker w = begin_walk(solid, NULL);
     for (size_t i = 0; i < k->count; i++) {
         csg_vec3 ignored, *gradient = gradients ? &gradients[i] : &ignored;
-        if (is_far(k->at[i])) {
+        if (csg_polyhedron_is_far(k->at[i])) {
             out[i] = (float)far_value(solid, k->at[i], gradient);
             continue;
         }
@@ -331,7 +271,7 @@ static void sample_far(const polyhedron *solid, const packet *k, float *out, csg
 enum { MANY = 100 };
 
 /* Where many values are asked for, what is beyond the limit is not looked for. */
-static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
+static void sample_near(const csg_polyhedron *solid, const csg_shape_kernel *kernel,
                         const csg_shape_near *near, packet *k, float *out, csg_vec3 *gradients)
 {
     walker w = begin_walk(solid, near);
@@ -349,7 +289,7 @@ static void sample_near(const polyhedron *solid, const csg_shape_kernel *kernel,
 }
 
 /* At most as many points as fit; how many there were. */
-static size_t sample_packet(const polyhedron *solid, const csg_shape_kernel *kernel,
+static size_t sample_packet(const csg_polyhedron *solid, const csg_shape_kernel *kernel,
                             const csg_shape_near *near, const float *x, const float *y,
                             const float *z, size_t count, float *out, csg_vec3 *gradients)
 {
@@ -366,7 +306,7 @@ static void polyhedron_values(const csg_shape *shape, const struct csg_shape_ker
                               const csg_shape_near *near, const float *x, const float *y,
                               const float *z, size_t count, float *out)
 {
-    const polyhedron *solid = as_polyhedron(shape);
+    const csg_polyhedron *solid = csg_polyhedron_of(shape);
     for (size_t i = 0; i < count;)
         i += sample_packet(solid, kernel, near, x + i, y + i, z + i, count - i, out + i, NULL);
 }
@@ -376,7 +316,7 @@ static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_
                                  const float *z, size_t count, float *out, float *gx, float *gy,
                                  float *gz)
 {
-    const polyhedron *solid = as_polyhedron(shape);
+    const csg_polyhedron *solid = csg_polyhedron_of(shape);
     csg_vec3 gradients[PACKET];
     size_t done;
     for (size_t i = 0; i < count; i += done) {
@@ -396,54 +336,20 @@ static void polyhedron_gradients(const csg_shape *shape, const struct csg_shape_
 static uint32_t narrow_polyhedron(const csg_shape *shape, const csg_shape_near *among,
                                   const csg_shape_cell *cell, uint32_t *items)
 {
-    const polyhedron *solid = as_polyhedron(shape);
+    const csg_polyhedron *solid = csg_polyhedron_of(shape);
     csg_vec3 center = csg_triangle_frame_enter(&solid->frame, cell->center);
     csg_vec3 half = csg_vec3_scale(cell->half, solid->frame.scale);
-    double reach = cell->reach * solid->frame.scale + LEAST;
-    if (is_far(center) || !(reach < 0x1p60))
+    double reach = cell->reach * solid->frame.scale + CSG_POLYHEDRON_LEAST;
+    if (csg_polyhedron_is_far(center) || !(reach < 0x1p60))
         return 0;
     return csg_tree_narrow(&solid->tree, among ? among->items : NULL, among ? among->count : 0,
                            center, half, reach, items, CSG_SHAPE_MOST_NEAR);
 }
 
-/* ---- normals ----------------------------------------------------------------------------------
- */
-
-typedef struct taking {
-    const polyhedron *solid;
-    csg_shape_take_normal *take;
-    void *user;
-    uint32_t count;
-} taking;
-
-static bool take_triangle(void *user, uint32_t place)
-{
-    enum { MOST = 256 };
-    taking *t = user;
-    const csg_tree_triangle *triangle = &t->solid->tree.triangles[place];
-    csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(triangle->ac, triangle->ab));
-    return ++t->count <= MOST && t->take(t->user, inward) &&
-           is_plain_beyond(t->solid, place, INFINITY);
-}
-
-/* Within the ball distances are at most that of c and its radius. */
-static bool polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius,
-                               csg_shape_take_normal *take, void *user)
-{
-    const polyhedron *solid = as_polyhedron(shape);
-    csg_vec3 at = csg_triangle_frame_enter(&solid->frame, c);
-    if (is_far(at))
-        return false;
-    double least = sqrt(csg_tree_nearest(&solid->tree, at, 0).squared);
-    double reach = (least + 2 * radius * solid->frame.scale) * (1 + 0x1p-40) + LEAST;
-    taking t = {solid, take, user, 0};
-    return csg_tree_within(&solid->tree, at, reach, take_triangle, &t);
-}
-
 /* ---- making it --------------------------------------------------------------------------------
  */
 
-static size_t turn_pieces(polyhedron *solid, csg_chain *chain, const bool *turned)
+static size_t turn_pieces(csg_polyhedron *solid, csg_chain *chain, const bool *turned)
 {
     size_t count = 0;
     for (size_t place = 0; place < solid->tree.count; place++) {
@@ -460,7 +366,8 @@ static size_t turn_pieces(polyhedron *solid, csg_chain *chain, const bool *turne
 }
 
 /* A place in the tree with a triangle of each piece. */
-static uint32_t *find_places(csg_arena *scratch, const polyhedron *solid, const csg_chain *chain)
+static uint32_t *find_places(csg_arena *scratch, const csg_polyhedron *solid,
+                             const csg_chain *chain)
 {
     uint32_t *places = csg_arena_alloc(scratch, chain->piece_count * sizeof *places);
     for (size_t i = 0; places && i < solid->tree.count; i++)
@@ -485,7 +392,7 @@ static size_t list_inverted(const csg_chain *chain, uint64_t *keys)
 }
 
 /* A piece that runs inwards is the hole in one around it; where there is none it is a mistake. */
-static bool turn_inverted_pieces(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
+static bool turn_inverted_pieces(csg_arena *scratch, csg_polyhedron *solid, csg_chain *chain,
                                  csg_repairs *repairs)
 {
     enum { MOST = 20000 }; /* rays */
@@ -509,7 +416,7 @@ static bool turn_inverted_pieces(csg_arena *scratch, polyhedron *solid, csg_chai
 }
 
 /* Looks at both sides of some triangles: 1 within and 0 without, or solids overlap. */
-static bool is_overlapping(const polyhedron *solid)
+static bool is_overlapping(const csg_polyhedron *solid)
 {
     enum { SAMPLES = 512 };
     size_t step = solid->tree.count / SAMPLES + 1;
@@ -520,7 +427,7 @@ static bool is_overlapping(const polyhedron *solid)
         csg_vec3 at[2] = {csg_vec3_sub(middle, out), csg_vec3_add(middle, out)};
         for (int k = 0; k < 2; k++) {
             csg_vec3 cell = csg_triangle_frame_round_point(at[k]);
-            if (box_holds(solid->tree.box, cell) &&
+            if (csg_box_holds(solid->tree.box, cell) &&
                 csg_tree_winding(&solid->tree, cell, NULL) >= 2 - k)
                 return true;
         }
@@ -537,7 +444,7 @@ static uint64_t hash_triangles(const csg_triangles *triangles)
 }
 
 /* Takes the chain's triangles, back in the units of the file. */
-static void take_triangles(polyhedron *solid, csg_triangles *triangles)
+static void take_triangles(csg_polyhedron *solid, csg_triangles *triangles)
 {
     csg_box box = csg_box_empty();
     for (size_t i = 0; i < triangles->point_count; i++)
@@ -554,18 +461,19 @@ static void take_triangles(polyhedron *solid, csg_triangles *triangles)
 
 /* What is known of each triangle of the tree. Edge k of a triangle of the chain is edge k of the
  * same triangle in the tree. */
-static bool make_beside(csg_arena *scratch, polyhedron *solid, const csg_triangles *chain,
+static bool make_beside(csg_arena *scratch, csg_polyhedron *solid, const csg_triangles *chain,
                         const csg_triangle_edges *edges)
 {
     size_t count = solid->tree.count;
     uint32_t *places = csg_arena_alloc(scratch, count * sizeof *places);
     solid->plain = csg_memory_alloc(solid->shape.memory, count * sizeof *solid->plain);
     solid->beside = csg_memory_alloc(solid->shape.memory, count * sizeof *solid->beside);
-    if (!places || !solid->plain || !solid->beside)
+    solid->turn = csg_memory_alloc(solid->shape.memory, count * sizeof *solid->turn);
+    if (!places || !solid->plain || !solid->beside || !solid->turn)
         return false;
     for (size_t i = 0; i < count; i++) {
         places[solid->tree.triangles[i].index] = (uint32_t)i;
-        atomic_init(&solid->plain[i], PLAIN_UNKNOWN);
+        atomic_init(&solid->plain[i], CSG_PLAIN_UNKNOWN);
     }
     for (uint32_t half = 0; half < 3 * chain->count; half++) {
         const csg_edge *edge = &edges->edges[edges->of_half[half]];
@@ -574,19 +482,23 @@ static bool make_beside(csg_arena *scratch, polyhedron *solid, const csg_triangl
         solid->beside[places[half / 3]][half % 3] =
             edge->count == 2 ? places[other / 3] : CSG_TREE_NONE;
     }
+    for (uint32_t i = 0; i < count; i++)
+        for (int edge = 0; edge < 3; edge++)
+            solid->turn[i][edge] = csg_polyhedron_find_turn(solid, i, edge);
     return true;
 }
 
-static void release_solid(polyhedron *solid)
+static void release_solid(csg_polyhedron *solid)
 {
     csg_memory *memory = solid->shape.memory;
     csg_memory_release(memory, solid->plain, solid->tree.count * sizeof *solid->plain);
     csg_memory_release(memory, solid->beside, solid->tree.count * sizeof *solid->beside);
+    csg_memory_release(memory, solid->turn, solid->tree.count * sizeof *solid->turn);
     csg_tree_release(&solid->tree);
 }
 
 /* Fills a shape whose tree is made. */
-static csgm_status fill_solid(csg_arena *scratch, polyhedron *solid, csg_chain *chain,
+static csgm_status fill_solid(csg_arena *scratch, csg_polyhedron *solid, csg_chain *chain,
                               csg_repairs *repairs)
 {
     csg_triangle_edges edges;
@@ -604,13 +516,13 @@ static csgm_status fill_solid(csg_arena *scratch, polyhedron *solid, csg_chain *
 }
 
 static csgm_status create(csg_memory *memory, csg_arena *scratch, const csg_triangles *triangles,
-                          csg_repairs *repairs, polyhedron *solid)
+                          csg_repairs *repairs, csg_polyhedron *solid)
 {
     csg_chain chain;
     csgm_status status = csg_repair(memory, scratch, triangles, &chain, repairs);
     if (status != CSGM_OK)
         return status;
-    *solid = (polyhedron){
+    *solid = (csg_polyhedron){
         .shape = {.kind = CSG_SHAPE_POLYHEDRON, .operations = &OPERATIONS, .memory = memory},
         .frame = chain.frame};
     atomic_init(&solid->shape.references, 1);
@@ -630,7 +542,7 @@ csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *trian
 {
     csg_repairs ignored;
     csg_arena scratch;
-    polyhedron *solid = csg_memory_alloc(memory, sizeof *solid);
+    csg_polyhedron *solid = csg_memory_alloc(memory, sizeof *solid);
     if (!solid)
         return CSGM_ERR_MEMORY;
     csg_arena_init(&scratch, memory);
@@ -645,7 +557,7 @@ csgm_status csg_polyhedron_create(csg_memory *memory, const csg_triangles *trian
 
 static void destroy_polyhedron(csg_shape *shape)
 {
-    polyhedron *solid = (polyhedron *)shape;
+    csg_polyhedron *solid = (csg_polyhedron *)shape;
     release_solid(solid);
     csg_triangles_release(&solid->mended);
     csg_memory_release(shape->memory, solid, sizeof *solid);
@@ -653,7 +565,7 @@ static void destroy_polyhedron(csg_shape *shape)
 
 static uint64_t hash_polyhedron(const csg_shape *shape)
 {
-    return as_polyhedron(shape)->hash;
+    return csg_polyhedron_of(shape)->hash;
 }
 
 static const csg_shape_operations OPERATIONS = {.destroy = destroy_polyhedron,
@@ -662,36 +574,38 @@ static const csg_shape_operations OPERATIONS = {.destroy = destroy_polyhedron,
                                                 .gradients = polyhedron_gradients,
                                                 .narrow = narrow_polyhedron,
                                                 .hash = hash_polyhedron,
-                                                .normals = polyhedron_normals};
+                                                .normals = csg_polyhedron_normals,
+                                                .creases = csg_polyhedron_creases};
 
 const csg_triangles *csg_polyhedron_triangles(const csg_shape *shape)
 {
-    return &as_polyhedron(shape)->mended;
+    return &csg_polyhedron_of(shape)->mended;
 }
 
 uint32_t csg_polyhedron_triangle_at(const csg_shape *shape, uint32_t place)
 {
-    return as_polyhedron(shape)->tree.triangles[place].index;
+    return csg_polyhedron_of(shape)->tree.triangles[place].index;
 }
 
 bool csg_polyhedron_near(const csg_shape *shape, uint32_t place, double reach,
                          csg_polyhedron_visit *visit, void *user)
 {
-    const polyhedron *solid = as_polyhedron(shape);
+    const csg_polyhedron *solid = csg_polyhedron_of(shape);
     const csg_tree_triangle *t = &solid->tree.triangles[place];
     csg_vec3 b = csg_vec3_add(t->a, t->ab), c = csg_vec3_add(t->a, t->ac);
     csg_box box =
         csg_box_hull((csg_box){t->a, t->a}, csg_box_hull((csg_box){b, b}, (csg_box){c, c}));
-    return csg_tree_in_box(&solid->tree, csg_box_grow(box, reach * solid->frame.scale + LEAST),
+    return csg_tree_in_box(&solid->tree,
+                           csg_box_grow(box, reach * solid->frame.scale + CSG_POLYHEDRON_LEAST),
                            visit, user);
 }
 
 bool csg_polyhedron_is_clear(const csg_shape *shape, uint32_t place)
 {
-    return csg_tree_is_clear(&as_polyhedron(shape)->tree, place);
+    return csg_tree_is_clear(&csg_polyhedron_of(shape)->tree, place);
 }
 
 bool csg_polyhedron_is_convex(const csg_shape *shape)
 {
-    return as_polyhedron(shape)->is_convex;
+    return csg_polyhedron_of(shape)->is_convex;
 }
