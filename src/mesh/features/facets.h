@@ -24,13 +24,14 @@ static inline void csg_feature_to_own(const csg_tape_node *node, const float *fr
                                                      frame[3 * i + 2] * at[2] + frame[9 + i];
 }
 
-/* Whether the shape of a leaf may crease in balls around points of the tape's frame: at most
- * CSG_SHAPE_MOST_BALLS. cell: the lattice's edge. */
+/* Whether the shape of a leaf may crease in cells, by their middles: at most CSG_SHAPE_MOST_BALLS.
+ * Where it is said not to, csg_feature_drop_facets would drop all that jumps. */
 void csg_feature_find_facets(const csg_tape *tape, const csg_tape_node *leaf, float cell,
-                             float radius, const float *x, const float *y, const float *z,
-                             size_t count, csg_shape_balls *balls);
+                             const float *x, const float *y, const float *z, size_t count,
+                             csg_shape_balls *balls);
 
-/* Segments that jump from one facet to the next without a crease are active no more. */
-void csg_feature_drop_facets(csg_feature_room *room, const csg_feature_probe *probe);
+/* Segments that jump from one facet of a shape to the next, and not at a crease, are active no
+ * more. */
+void csg_feature_drop_facets(csg_feature_room *room, csg_feature_probe *probe);
 
 #endif

@@ -190,12 +190,6 @@ typedef struct csg_found_loop {
     bool wide;                              /* its corners' normals lie far apart */
 } csg_found_loop;
 
-/* Parts of a block that are one shape each and nothing else (facets.h). */
-typedef struct csg_feature_facets {
-    csg_tape_node shape[CSG_OCTANTS];
-    uint8_t are_all; /* a bit each */
-} csg_feature_facets;
-
 /* One thread's room. */
 typedef struct csg_feature_room {
     csg_edges edges;
@@ -209,7 +203,6 @@ typedef struct csg_feature_room {
     uint8_t joined[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by cell: pair.h */
     bool any_joined;
     uint8_t possible[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by row of cells, a bit each: possible.h */
-    csg_feature_facets facets;
     float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
     float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
     uint32_t which[CSG_FEATURE_SEGMENTS];

@@ -344,6 +344,7 @@ static void find_jumps(const csg_marching *m, const csg_block *block, csg_featur
     expect_jumps(room, probe);
     for (int step = 1; step < HALVINGS; step++)
         halve(room, probe);
+    csg_feature_drop_facets(room, probe);
 }
 
 static void find_creases(const csg_marching *m, const csg_block *block, csg_feature_room *room,
@@ -354,7 +355,6 @@ static void find_creases(const csg_marching *m, const csg_block *block, csg_feat
         find_jumps(m, block, room, probe);
     drop_detours(room);
     ask_vertices(room, probe);
-    csg_feature_drop_facets(room, probe);
     for (uint32_t i = 0; i < room->segment_count; i++)
         if (room->segments[i].active)
             locate_crease(room, i);
@@ -391,7 +391,7 @@ static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_
                           csg_memory *memory)
 {
     const csg_marching *m = probe->marching;
-    bool possible = csg_feature_find_possible(probe, room->possible, &room->facets);
+    bool possible = csg_feature_find_possible(probe, room->possible);
     bool has_pairs = csg_feature_has_pairs(block);
     if (!possible && !has_pairs)
         return true;

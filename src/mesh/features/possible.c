@@ -270,11 +270,6 @@ static void find_values(csg_feature_probe *probe, const csg_tape *leaf, bool is_
     probe->evaluations += cells->count;
 }
 
-/* A segment of a polygon lies in one face of its cell, between two points of the surface, so none
- * of it is farther than half a face's diagonal from one of them, nor is the place of the surface
- * that is nearest to it: all of these are in a ball around the cell. */
-static const float HALF_FACE = 0.7072f; /* sqrt(2) / 2, rounded up */
-
 /* A segment of a polygon runs between two points of the surface in one cell, so that no point of it
  * is farther than half a diagonal from one of them, and f there no farther from zero than it can
  * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
@@ -295,8 +290,8 @@ static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool
     tape.count = 1;
     find_values(probe, &tape, is_alone, cells);
     if (is_shape)
-        csg_feature_find_facets(&tape, node, cell, (HALF_DIAGONAL + HALF_FACE) * cell, cells->x,
-                                cells->y, cells->z, cells->count, &balls);
+        csg_feature_find_facets(&tape, node, cell, cells->x, cells->y, cells->z, cells->count,
+                                &balls);
     for (size_t i = 0; i < cells->count; i++) {
         if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
             continue;
@@ -329,18 +324,13 @@ static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part
 }
 
 static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts, unsigned still,
-                       uint8_t *rows, csg_feature_facets *facets)
+                       uint8_t *rows)
 {
     bool any = false;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
         const csg_block_part *part = &parts[octant];
-        if (part->state != CSG_CELL_SURFACE)
-            continue;
-        any = mark_part(probe, octant, part, still >> octant & 1, rows) || any;
-        if (part->node_count == 1 && part->nodes->op == CSG_OP_SHAPE) {
-            facets->are_all |= (uint8_t)(1u << octant);
-            facets->shape[octant] = *part->nodes;
-        }
+        if (part->state == CSG_CELL_SURFACE)
+            any = mark_part(probe, octant, part, still >> octant & 1, rows) || any;
     }
     return any;
 }
@@ -407,16 +397,14 @@ static unsigned find_still_parts(const csg_feature_probe *probe)
 /* A sharp operand that is in the block's tape but far away would have smooth thin parts looked at
  * that a shorter tape leaves alone; so whatever the octree has dropped, parts are asked. */
 bool csg_feature_find_possible(csg_feature_probe *probe,
-                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE],
-                               csg_feature_facets *facets)
+                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE])
 {
     const csg_block *block = probe->block;
     unsigned still = find_still_parts(probe);
     memset(rows, 0, CSG_BLOCK_EDGE * CSG_BLOCK_EDGE);
-    facets->are_all = 0;
     if (block->parts)
         return parts_may_crease(probe, block->parts, still) &&
-               mark_parts(probe, block->parts, still, rows, facets);
+               mark_parts(probe, block->parts, still, rows);
     csg_block_part parts[CSG_OCTANTS];
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
         parts[octant] = (csg_block_part){block->nodes, block->node_count, CSG_CELL_SURFACE};
@@ -425,8 +413,8 @@ bool csg_feature_find_possible(csg_feature_probe *probe,
     csg_feature_around_begin(probe->around, probe->memory, probe->marching);
     csg_arena_mark mark = csg_arena_get_mark(&probe->around->arena);
     bool done = split(probe, parts); /* without memory the run ends */
-    bool possible = !done || (parts_may_crease(probe, parts, still) &&
-                              mark_parts(probe, parts, still, rows, facets));
+    bool possible =
+        !done || (parts_may_crease(probe, parts, still) && mark_parts(probe, parts, still, rows));
     probe->around->out_of_memory |= !done;
     csg_arena_release_to(&probe->around->arena, mark);
     return possible;
