@@ -44,12 +44,13 @@ typedef struct csg_shape_crease {
     double least, blunt, narrow, most_turn;
 } csg_shape_crease;
 
-/* Balls of one radius that lie together, in the shape's own frame. */
+/* Balls that lie together, in the shape's own frame. */
 typedef struct csg_shape_balls {
     csg_vec3 center[CSG_SHAPE_MOST_BALLS];
+    double radius[CSG_SHAPE_MOST_BALLS];
     bool may_crease[CSG_SHAPE_MOST_BALLS];
     size_t count;
-    double radius;
+    size_t fewest; /* with fewer facets around all of them none is looked at: all may crease */
 } csg_shape_balls;
 
 /* What each kind brings along. */

@@ -25,7 +25,7 @@ static void end(solid_case *c)
 static bool may_crease(const solid_case *c, csg_vec3 at, double radius, double narrow)
 {
     const csg_shape_crease crease = {LEAST, BLUNT, narrow, MOST_TURN};
-    csg_shape_balls ball = {.center = {at}, .count = 1, .radius = radius};
+    csg_shape_balls ball = {.center = {at}, .count = 1, .radius = {radius}};
     csg_shape_creases(c->shape, &crease, &ball);
     return ball.may_crease[0];
 }
@@ -116,7 +116,7 @@ static void test_together(void **state)
 {
     const csg_shape_crease crease = {LEAST, BLUNT, 0.1, MOST_TURN};
     csg_random random = {3};
-    csg_shape_balls balls = {.count = CSG_SHAPE_MOST_BALLS, .radius = 0.2};
+    csg_shape_balls balls = {.count = CSG_SHAPE_MOST_BALLS};
     solid_case c;
     int creased = 0;
     solid_begin(&c);
@@ -125,14 +125,19 @@ static void test_together(void **state)
     for (size_t i = 0; i < balls.count; i++) {
         csg_vec3 p = solid_random_point(&random, 1);
         balls.center[i] = csg_vec3_make(1, p.y, p.z);
+        balls.radius[i] = i % 2 ? 0.2 : 0.3;
     }
     csg_shape_creases(c.shape, &crease, &balls);
     for (size_t i = 0; i < balls.count; i++) {
         creased += balls.may_crease[i];
         assert_int_equal(balls.may_crease[i],
-                         may_crease(&c, balls.center[i], balls.radius, crease.narrow));
+                         may_crease(&c, balls.center[i], balls.radius[i], crease.narrow));
     }
     assert_true(creased > 5 && creased < 60);
+    balls.fewest = 1000000; /* there are fewer facets than that */
+    csg_shape_creases(c.shape, &crease, &balls);
+    for (size_t i = 0; i < balls.count; i++)
+        assert_true(balls.may_crease[i]);
     end(&c);
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "mesh/features/apex.h"
+#include "mesh/features/facets.h"
 #include "mesh/features/help.h"
 #include "mesh/features/pair.h"
 #include "mesh/features/possible.h"
@@ -343,6 +344,7 @@ static void find_jumps(const csg_marching *m, const csg_block *block, csg_featur
     expect_jumps(room, probe);
     for (int step = 1; step < HALVINGS; step++)
         halve(room, probe);
+    csg_feature_drop_facets(room, probe);
 }
 
 static void find_creases(const csg_marching *m, const csg_block *block, csg_feature_room *room,

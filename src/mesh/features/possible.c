@@ -21,31 +21,16 @@
 
 #include "field/gradients/cone_leaf.h"
 #include "grid/octree/octree.h"
+#include "mesh/features/facets.h"
 #include "scene/operators/blend_kinds.h"
 
 enum { PART_CELLS = CSG_PART_EDGE * CSG_PART_EDGE * CSG_PART_EDGE };
 
 /* sqrt(3) / 2, rounded up: of a cube's diagonal, in edges. */
 static const float HALF_DIAGONAL = 0.8661f;
-/* By how much a formula's gradient may turn in a cell, as a part of its length: by 23 degrees, less
- * than where a tip is looked for (25). The shortest bracket around a jump is 512 times as short,
- * and from end to end of it the gradient turns by less than a jump's three degrees. */
-static const double MOST_TURN = 0.4;
-/* Cells: creases nearer to each other run through one polygon, or through one and the next, and a
- * polygon has one apex. */
-static const double NARROW = 2;
-
 typedef struct ball {
     float at[3], radius;
 } ball;
-
-static void to_own(const csg_tape_node *node, const float *frame, const float at[3], float q[3])
-{
-    for (int i = 0; i < 3; i++)
-        q[i] = node->frame == CSG_FRAME_OFFSET ? at[i] - frame[i]
-                                               : frame[3 * i] * at[0] + frame[3 * i + 1] * at[1] +
-                                                     frame[3 * i + 2] * at[2] + frame[9 + i];
-}
 
 /* b in the leaf's own values: f = sigma own + raise. */
 static csg_band own_band(csg_band b, const float *parameters)
@@ -73,7 +58,7 @@ static bool leaf_may_crease(const csg_tape *tape, const csg_tape_node *node, bal
     /* frames stretch lengths by at most 1 / sigma */
     float stretch = offset ? 1.0f : 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
     float reach = 1.01f * at.radius * fmaxf(stretch, 1.0f), q[3];
-    to_own(node, parameters + CSG_LEAF_FRAME, at.at, q);
+    csg_feature_to_own(node, parameters + CSG_LEAF_FRAME, at.at, q);
     return node->warp ||
            may_crease(node->op, csg_tape_own(tape, node), q, reach, own_band(b, parameters));
 }
@@ -209,55 +194,6 @@ static void gather_cells(const csg_feature_probe *probe, int octant, part_cells 
     }
 }
 
-/* ---- shapes ----------------------------------------------------------------------------------
- */
-
-/* Whether a frame keeps angles, but for rounding. */
-static bool keeps_angles(const csg_tape_node *node, const float *frame)
-{
-    static const float SAME = 1e-4f;
-    float one = frame[0] * frame[0] + frame[1] * frame[1] + frame[2] * frame[2];
-    bool keeps = true;
-    for (int i = 0; i < 3 && node->frame != CSG_FRAME_OFFSET; i++)
-        for (int k = 0; k <= i; k++) {
-            const float *a = frame + 3 * i, *b = frame + 3 * k;
-            float product = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            keeps = keeps && fabsf(product - (i == k ? one : 0)) <= SAME * one;
-        }
-    return keeps;
-}
-
-/* In which cells a shape may crease. A segment of a polygon lies in one face of its cell, between
- * two points of the surface, so none of it is farther than half a face's diagonal from one of them,
- * nor is the place of the surface that is nearest to it: all of these are in a ball around the
- * cell. Facets of a scan that are as small as cells and turn as little as a smooth surface may are
- * one: their blunt edges are no creases (csg_shape_crease). */
-static void find_shape_creases(const csg_tape *tape, const csg_tape_node *node, float cell,
-                               const part_cells *cells, csg_shape_balls *balls)
-{
-    static const float HALF_FACE = 0.7072f; /* sqrt(2) / 2, rounded up */
-    const float *parameters = tape->parameters + node->parameters;
-    const float *frame = parameters + CSG_LEAF_FRAME;
-    float scale = 1.0f / fabsf(parameters[CSG_LEAF_SIGMA]);
-    balls->count = cells->count;
-    balls->radius = 1.01 * (double)((HALF_DIAGONAL + HALF_FACE) * cell * scale);
-    if (node->warp || parameters[CSG_LEAF_RAISE] != 0 || !keeps_angles(node, frame)) {
-        memset(balls->may_crease, true, sizeof balls->may_crease);
-        return;
-    }
-    const csg_shape_crease crease = {.least = (double)CSG_FEATURE_LEAST_JUMP,
-                                     .blunt = (double)CSG_FEATURE_FADING,
-                                     .narrow = NARROW * (double)(cell * scale),
-                                     .most_turn = 0.5 * MOST_TURN * MOST_TURN};
-    for (size_t i = 0; i < cells->count; i++) {
-        const float at[3] = {cells->x[i], cells->y[i], cells->z[i]};
-        float q[3];
-        to_own(node, frame, at, q);
-        balls->center[i] = csg_vec3_from_floats(q);
-    }
-    csg_shape_creases(csg_tape_shape(tape, node), &crease, balls);
-}
-
 /* Whether at each point the field is the value of one primitive, formula or shape. */
 static bool is_one_at_a_time(const csg_block_part *part)
 {
@@ -280,7 +216,7 @@ static bool find_way(const csg_tape *tape, const csg_tape_node *node, const ball
 {
     if (!csg_op_has(node->op, CSG_TRAIT_BALL) || node->frame != CSG_FRAME_OFFSET)
         return false;
-    to_own(node, tape->parameters + node->parameters + CSG_LEAF_FRAME, at->at, way);
+    csg_feature_to_own(node, tape->parameters + node->parameters + CSG_LEAF_FRAME, at->at, way);
     *length = sqrtf(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
     return *length > 1.01f * at->radius;
 }
@@ -354,7 +290,8 @@ static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool
     tape.count = 1;
     find_values(probe, &tape, is_alone, cells);
     if (is_shape)
-        find_shape_creases(&tape, node, cell, cells, &balls);
+        csg_feature_find_facets(&tape, node, cell, cells->x, cells->y, cells->z, cells->count,
+                                &balls);
     for (size_t i = 0; i < cells->count; i++) {
         if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
             continue;
@@ -412,7 +349,7 @@ static bool is_still(const csg_tape *tape, const csg_tape_node *node, const floa
     if (!csg_cone_find_bend(tape, node, at, radius, &g, &bend))
         return false;
     double shortest = csg_norm3(g.at) - g.spread - bend * half * diagonal;
-    return bend * cell * diagonal < MOST_TURN * shortest;
+    return bend * cell * diagonal < CSG_FEATURE_MOST_TURN * shortest;
 }
 
 static bool are_still(const csg_feature_probe *probe, const float at[3], float half)

@@ -62,12 +62,13 @@ bool csg_polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius,
 typedef struct bending {
     const csg_polyhedron *solid;
     const csg_shape_crease *crease;
-    double narrow, radius; /* frame units */
+    double narrow; /* frame units */
     size_t count;
     uint64_t all;                          /* a bit each */
     csg_vec3 center[CSG_SHAPE_MOST_BALLS]; /* frame units; and once more, axis by axis */
-    float at[3][CSG_SHAPE_MOST_BALLS];
-    csg_box normals[CSG_SHAPE_MOST_BALLS]; /* of what is in each ball */
+    float at[3][CSG_SHAPE_MOST_BALLS], reach[CSG_SHAPE_MOST_BALLS]; /* a little more */
+    double squared[CSG_SHAPE_MOST_BALLS];                           /* radii */
+    csg_box normals[CSG_SHAPE_MOST_BALLS];                          /* of what is in each ball */
     bool *may_crease;
 } bending;
 
@@ -155,19 +156,19 @@ static uint64_t balls_at(const bending *b, const csg_tree_triangle *t)
 {
     const double corner[3] = {t->a.x, t->a.y, t->a.z}, ab[3] = {t->ab.x, t->ab.y, t->ab.z},
                  ac[3] = {t->ac.x, t->ac.y, t->ac.z};
-    float reach = (float)b->radius + 4 * CSG_TREE_PAD;
     csg_four low[3], high[3];
     uint64_t near = 0;
     for (int k = 0; k < 3; k++) {
         double least = ab[k] < ac[k] ? ab[k] : ac[k], most = ab[k] < ac[k] ? ac[k] : ab[k];
-        low[k] = csg_four_all((float)(corner[k] + (least < 0 ? least : 0)) - reach);
-        high[k] = csg_four_all((float)(corner[k] + (most > 0 ? most : 0)) + reach);
+        low[k] = csg_four_all((float)(corner[k] + (least < 0 ? least : 0)));
+        high[k] = csg_four_all((float)(corner[k] + (most > 0 ? most : 0)));
     }
     for (size_t i = 0; i < b->count; i += 4) {
         csg_four_mask in = ~(csg_four_mask){0};
+        csg_four reach = csg_four_load(b->reach + i);
         for (int k = 0; k < 3; k++) {
             csg_four at = csg_four_load(b->at[k] + i);
-            in &= (at >= low[k]) & (at <= high[k]);
+            in &= (at + reach >= low[k]) & (at - reach <= high[k]);
         }
         near |= (uint64_t)csg_four_bits(in) << i;
     }
@@ -188,7 +189,7 @@ static void add_edge(bending *b, uint32_t place, int edge, uint64_t near)
     csg_vec3 from = corner_of(t, edge), to = corner_of(t, (edge + 1) % 3);
     for (; near; near &= near - 1) {
         int i = __builtin_ctzll(near);
-        b->may_crease[i] |= squared_to_segment(b->center[i], from, to) <= b->radius * b->radius;
+        b->may_crease[i] |= squared_to_segment(b->center[i], from, to) <= b->squared[i];
     }
 }
 
@@ -209,7 +210,7 @@ static void add_face(bending *b, uint32_t place, uint64_t near)
         int i = __builtin_ctzll(near);
         csg_box *normals = &b->normals[i];
         if (b->may_crease[i] || (is_plain && csg_box_holds(*normals, inward)) ||
-            !(csg_triangle_squared(t, b->center[i]) <= b->radius * b->radius))
+            !(csg_triangle_squared(t, b->center[i]) <= b->squared[i]))
             continue;
         csg_box_extend(normals, inward);
         b->may_crease[i] = !is_plain || is_bent(normals, b->crease->most_turn);
@@ -234,20 +235,23 @@ static csg_box enter_balls(bending *b, csg_shape_balls *balls)
 {
     const csg_triangle_frame *frame = &b->solid->frame;
     csg_box box = csg_box_empty();
-    b->radius = balls->radius * frame->scale + CSG_POLYHEDRON_LEAST;
     b->count = balls->count;
     b->all = 0;
     b->may_crease = balls->may_crease;
     memset(b->at, 0, sizeof b->at);
+    memset(b->reach, 0, sizeof b->reach);
     for (size_t i = 0; i < b->count; i++) {
         csg_vec3 at = b->center[i] = csg_triangle_frame_enter(frame, balls->center[i]);
+        double radius = balls->radius[i] * frame->scale + CSG_POLYHEDRON_LEAST;
         b->at[0][i] = (float)at.x, b->at[1][i] = (float)at.y, b->at[2][i] = (float)at.z;
+        b->reach[i] = (float)radius + 8 * CSG_TREE_PAD;
+        b->squared[i] = radius * radius;
         b->all |= (uint64_t)1 << i;
         b->normals[i] = csg_box_empty();
         b->may_crease[i] = csg_polyhedron_is_far(at);
-        csg_box_extend(&box, at);
+        box = csg_box_hull(box, csg_box_grow((csg_box){at, at}, radius));
     }
-    return csg_box_grow(box, b->radius);
+    return box;
 }
 
 static bool count_triangle(void *user, uint32_t place)
@@ -256,12 +260,9 @@ static bool count_triangle(void *user, uint32_t place)
     return --*left > 0;
 }
 
-/* Fewer triangles than balls: most facets are too large for their edges to be left out, and those
- * who ask look closely at once. */
-static bool are_few_triangles(const bending *b, csg_box box)
+static bool are_fewer(const csg_tree *tree, csg_box box, size_t fewest)
 {
-    size_t left = b->count;
-    return csg_tree_in_box(&b->solid->tree, box, count_triangle, &left);
+    return fewest && csg_tree_in_box(tree, box, count_triangle, &fewest);
 }
 
 void csg_polyhedron_creases(const csg_shape *shape, const csg_shape_crease *crease,
@@ -272,7 +273,7 @@ void csg_polyhedron_creases(const csg_shape *shape, const csg_shape_crease *crea
     b.crease = crease;
     b.narrow = crease->narrow * b.solid->frame.scale;
     csg_box box = enter_balls(&b, balls);
-    if (are_few_triangles(&b, box))
+    if (are_fewer(&b.solid->tree, box, balls->fewest))
         memset(balls->may_crease, true, sizeof balls->may_crease);
     else
         csg_tree_in_box(&b.solid->tree, box, add_triangle, &b);
