@@ -27,6 +27,11 @@ void csg_field_release_parts(csgm_field *field);
 csgm_status csg_field_clip(csgm_context *context, const csgm_field *field, csg_box box,
                            csgm_field **out);
 
+/* What the scene says of a compiled field's parameters, in the arena; nothing, of what was clipped.
+ * False: no memory. */
+bool csg_field_exact(csgm_context *context, const csgm_field *field, csg_arena *arena,
+                     csg_tape_exact *out);
+
 /* The scene's counts of nodes and its steepest leaf, into the field. */
 void csg_field_count(const csgm_scene *scene, csgm_field *field);
 

@@ -173,10 +173,17 @@ typedef struct csg_tape_warp {
     float own[CSG_WARP_PARAMETERS];
 } csg_tape_warp;
 
+/* What the scene says where the tape has floats: a double for each parameter of the tape, with the
+ * rounding of doubles alone in the place of `off` and `turned`. */
+typedef struct csg_tape_exact {
+    const double *parameters; /* NULL: not known */
+} csg_tape_exact;
+
 /* A tape, whole or pruned: `nodes` of one array over shared parameters. */
 typedef struct csg_tape {
     const csg_tape_node *nodes;
     const float *parameters;
+    const csg_tape_exact *exact; /* NULL: as its parameters */
     const csg_color *colors;
     const csg_tape_step *steps;
     const csg_tape_formula *formulas;
@@ -208,12 +215,24 @@ static inline bool csg_fillet_rows_apart(const float *parameters, uint32_t one, 
     return false;
 }
 
+/* Parameter number `at` as the scene says it, as far as that is known: of
+ * leaves, and the length of a blend. */
+static inline double csg_tape_number(const csg_tape *tape, uint32_t at)
+{
+    bool is_known = tape->exact && tape->exact->parameters;
+    return is_known ? tape->exact->parameters[at] : (double)tape->parameters[at];
+}
+
 /* A leaf's own parameters. */
-static inline const float *csg_tape_own(const csg_tape *tape, const csg_tape_node *leaf)
+static inline uint32_t csg_tape_own_at(const csg_tape_node *leaf)
 {
     bool offset = leaf->frame == CSG_FRAME_OFFSET;
-    return tape->parameters + leaf->parameters +
-           (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+    return leaf->parameters + (offset ? CSG_LEAF_OWN_OFFSET : CSG_LEAF_OWN_AFFINE);
+}
+
+static inline const float *csg_tape_own(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    return tape->parameters + csg_tape_own_at(leaf);
 }
 
 /* Of a CSG_OP_SHAPE. */

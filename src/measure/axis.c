@@ -30,21 +30,39 @@ static double square_of_skew(double a, double b, double c, double d)
                               : (square(a + d) + square(b - c)) / 2;
 }
 
-/* A plane has all of its place in its own parameters. */
-static apart plane_apart(const float *own, int across, int beside)
+/* Number i of the leaf's parameters, of its frame, of its own ones. */
+static double number_of(const csg_tape *tape, const csg_tape_node *leaf, int i)
 {
-    return (apart){0, sqrt(square((double)own[across]) + square((double)own[beside]))};
+    return csg_tape_number(tape, leaf->parameters + (uint32_t)i);
+}
+
+static double frame_of(const csg_tape *tape, const csg_tape_node *leaf, int i)
+{
+    return number_of(tape, leaf, CSG_LEAF_FRAME + i);
+}
+
+static double own_of(const csg_tape *tape, const csg_tape_node *leaf, int i)
+{
+    return csg_tape_number(tape, csg_tape_own_at(leaf) + (uint32_t)i);
+}
+
+/* A plane has all of its place in its own parameters. */
+static apart plane_apart(const csg_tape *tape, const csg_tape_node *leaf, int across, int beside)
+{
+    return (apart){0,
+                   sqrt(square(own_of(tape, leaf, across)) + square(own_of(tape, leaf, beside)))};
 }
 
 /* A leaf whose own z axis has to be the axis. */
-static apart frame_apart(const float *parameters, bool is_affine, int axis, int across, int beside)
+static apart frame_apart(const csg_tape *tape, const csg_tape_node *leaf, int axis, int across,
+                         int beside)
 {
-    const float *frame = parameters + CSG_LEAF_FRAME;
-    double m[3][3], t[3], sigma = fabs((double)parameters[CSG_LEAF_SIGMA]);
+    bool is_affine = leaf->frame == CSG_FRAME_AFFINE;
+    double m[3][3], t[3], sigma = fabs(number_of(tape, leaf, CSG_LEAF_SIGMA));
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
-            m[i][k] = is_affine ? (double)frame[3 * i + k] : i == k;
-        t[i] = is_affine ? (double)frame[9 + i] : -(double)frame[i];
+            m[i][k] = is_affine ? frame_of(tape, leaf, 3 * i + k) : i == k;
+        t[i] = is_affine ? frame_of(tape, leaf, 9 + i) : -frame_of(tape, leaf, i);
     }
     double turn = square(m[2][across]) + square(m[2][beside]) + square(m[0][axis]) +
                   square(m[1][axis]) +
@@ -52,12 +70,19 @@ static apart frame_apart(const float *parameters, bool is_affine, int axis, int 
     return (apart){sigma * sqrt(square(t[0]) + square(t[1])), sigma * sqrt(turn)};
 }
 
-/* INFINITY: it does not turn. */
+/* How far one is from being round whose floats are. */
+static double skew_of(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    csg_primitive_kind kind = csg_op_node_kind(leaf->op);
+    if (kind == (csg_primitive_kind)CSG_NODE_ELLIPSOID)
+        return fabs(own_of(tape, leaf, 0) - own_of(tape, leaf, 1));
+    return kind == (csg_primitive_kind)CSG_NODE_TORUS && own_of(tape, leaf, 2) > -1 ? INFINITY : 0;
+}
+
+/* By the tape's numbers, or the scene's (csg_tape_number). INFINITY: it does not turn. */
 static apart find_apart(const csg_tape *tape, const csg_tape_node *leaf, int axis)
 {
     static const apart FAR = {INFINITY, INFINITY};
-    const float *parameters = tape->parameters + leaf->parameters, *own = csg_tape_own(tape, leaf);
-    const float *frame = parameters + CSG_LEAF_FRAME;
     int across = (axis + 1) % 3, beside = (axis + 2) % 3;
     bool is_affine = leaf->frame == CSG_FRAME_AFFINE;
     if (leaf->warp || !csg_op_is_primitive(leaf->op) ||
@@ -65,14 +90,17 @@ static apart find_apart(const csg_tape *tape, const csg_tape_node *leaf, int axi
         return FAR;
     const csg_primitive *primitive = csg_primitive_of(csg_op_node_kind(leaf->op));
     if (primitive->traits & CSG_TRAIT_LINEAR)
-        return plane_apart(own, across, beside);
-    if (!(primitive->mirrors(own) & CSG_MIRROR_AROUND))
+        return plane_apart(tape, leaf, across, beside);
+    if (!(primitive->mirrors(csg_tape_own(tape, leaf)) & CSG_MIRROR_AROUND))
         return FAR;
     if (primitive->traits & CSG_TRAIT_BALL && !is_affine)
-        return (apart){fabs((double)parameters[CSG_LEAF_SIGMA]) *
-                           sqrt(square((double)frame[across]) + square((double)frame[beside])),
-                       0};
-    return frame_apart(parameters, is_affine, axis, across, beside);
+        return (apart){
+            fabs(number_of(tape, leaf, CSG_LEAF_SIGMA)) *
+                sqrt(square(frame_of(tape, leaf, across)) + square(frame_of(tape, leaf, beside))),
+            0};
+    apart out = frame_apart(tape, leaf, axis, across, beside);
+    out.place += fabs(number_of(tape, leaf, CSG_LEAF_SIGMA)) * skew_of(tape, leaf);
+    return out;
 }
 
 /* A function of values alone, or a fillet, which turns on angles between gradients in a frame that
@@ -122,19 +150,55 @@ static void widen(const csg_tape *tape, int axis, float *parameters)
     }
 }
 
-bool csg_axis_find(csg_tape *tape, size_t parameter_count, csg_arena *arena, int *axis)
+/* The same of what the scene says, where a leaf is off by what doubles make of it. False: one does
+ * not turn that its floats say does. */
+static bool widen_exact(const csg_tape *tape, int axis, double *exact)
 {
+    bool all = true;
+    for (uint32_t i = 0; i < tape->count; i++) {
+        if (!csg_op_is_leaf(tape->nodes[i].op))
+            continue;
+        apart a = find_apart(tape, &tape->nodes[i], axis);
+        double *of = exact + tape->nodes[i].parameters;
+        of[CSG_LEAF_OFF] += 2 * a.place;
+        of[CSG_LEAF_TURNED] += 2 * a.turn;
+        all = all && isfinite(a.place + a.turn);
+    }
+    return all;
+}
+
+/* *exact: with as much more room. False: out of memory. */
+static bool find_exact(const csg_tape *tape, size_t parameter_count, int axis, csg_arena *arena,
+                       csg_tape_exact *exact)
+{
+    csg_tape of = *tape;
+    of.exact = exact;
+    double *parameters = csg_arena_alloc(arena, (parameter_count + 1) * sizeof *parameters);
+    if (!parameters)
+        return false;
+    memcpy(parameters, exact->parameters, parameter_count * sizeof *parameters);
+    exact->parameters = widen_exact(&of, axis, parameters) ? parameters : NULL;
+    return true;
+}
+
+bool csg_axis_find(csg_tape *tape, size_t parameter_count, csg_tape_exact *exact, csg_arena *arena,
+                   int *axis)
+{
+    csg_tape floats = *tape;
+    floats.exact = NULL;
     *axis = CSG_AXIS_NONE;
     for (int k = 2; k >= 0 && *axis == CSG_AXIS_NONE && tape->count; k--)
-        if (is_about(tape, k))
+        if (is_about(&floats, k))
             *axis = k;
     if (*axis == CSG_AXIS_NONE)
         return true;
+    if (exact && exact->parameters && !find_exact(tape, parameter_count, *axis, arena, exact))
+        return false;
     float *parameters = csg_arena_alloc(arena, (parameter_count + 1) * sizeof *parameters);
     if (!parameters)
         return false;
     memcpy(parameters, tape->parameters, parameter_count * sizeof *parameters);
-    widen(tape, *axis, parameters);
+    widen(&floats, *axis, parameters);
     tape->parameters = parameters;
     return true;
 }

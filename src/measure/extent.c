@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "measure/graph_field.h"
 
 enum { ASK_EVERY = 256 };
 
@@ -138,6 +139,14 @@ static corner reach_of_halves(const search *s, const csg_measure_cube *q, const 
     return stack[0];
 }
 
+static void take_found(search *s, const csg_measure_cube *q, corner found)
+{
+    if (!(found.along > s->found))
+        return;
+    s->found = found.along;
+    s->at = csg_vec3_make(q->c[0] + found.at[0], q->c[1] + found.at[1], q->c[2] + found.at[2]);
+}
+
 /* Of a cube that is inside. */
 static corner corner_of(const search *s, const csg_measure_cube *q)
 {
@@ -147,24 +156,84 @@ static corner corner_of(const search *s, const csg_measure_cube *q)
     return out;
 }
 
-static void take_found(search *s, const csg_measure_cube *q, corner found)
+/* By planes, found by floats. Returns the farthest place that the solid can have in the cube. */
+static corner look_at_planes(search *s, csg_measure_cube *q)
 {
-    if (!(found.along > s->found))
-        return;
-    s->found = found.along;
-    s->at = csg_vec3_make(q->c[0] + found.at[0], q->c[1] + found.at[1], q->c[2] + found.at[2]);
+    csg_halves halves;
+    if (!csg_measure_enclose(s->walk, s->worker, q, &halves))
+        return corner_of(s, q);
+    corner sure = reach_of_halves(s, q, &halves, true);
+    take_found(s, q, sure.along >= INFINITY ? corner_of(s, q) : sure);
+    const corner most = reach_of_halves(s, q, &halves, false), all = corner_of(s, q);
+    return most.along < all.along ? most : all;
+}
+
+/* The same by Taylor models, which rounding of floats is no part of: where the field is positive,
+ * one of its pieces is. */
+static corner look_at_models(search *s, const csg_measure_cube *q)
+{
+    csg_taylor_pieces f; /* not filled: they are large */
+    const double box[3] = {q->half, q->half, q->half};
+    double far = 3 * q->half * q->half;
+    corner most = NOWHERE;
+    if (!csg_graph_field_pieces(&q->tape, q->c, q->half, &f))
+        return corner_of(s, q);
+    for (int i = 0; i < f.count; i++) {
+        const csg_taylor *of = &f.of[i].f;
+        double room =
+            (csg_taylor_bends(of, box) + of->error + of->quartic * far * far) * (1 + ROUNDING) +
+            ROUNDING * (fabs(of->value) + q->half * csg_norm3(of->slope));
+        const corner reach = reach_of(s, q, of->value + room, of->slope);
+        most = reach.along > most.along ? reach : most;
+        if (f.count == 1)
+            take_found(s, q, reach_of(s, q, of->value - room, of->slope));
+    }
+    return most;
+}
+
+/* Is all of the cube in the solid? */
+static bool is_inside(const csg_measure_cube *q)
+{
+    csg_taylor_pieces f; /* not filled: they are large */
+    if (!csg_graph_field_pieces(&q->tape, q->c, q->half, &f))
+        return false;
+    for (int i = 0; i < f.count; i++)
+        if (!(csg_taylor_least(&f.of[i].f, csg_enclosure_radius(q->half)) > 0))
+            return false;
+    return true;
+}
+
+/* What is known all over a cube leaves its crease open, and what bends. Less than the tolerance
+ * behind the farthest place that the solid may have in it there may be one that it has. */
+static void probe(search *s, const csg_measure_cube *q, const corner *farthest)
+{
+    static const double BACK = 0.5, WIDE = 0x1p-6;
+    csg_measure_cube at = *q;
+    double along = 0;
+    at.half = fmin(WIDE * s->tolerance, q->half);
+    for (int k = 0; k < 3; k++) {
+        double room = q->half - at.half, to = farthest->at[k] - BACK * s->tolerance * s->d[k];
+        at.c[k] = q->c[k] + fmin(fmax(to, -room), room);
+        along += s->d[k] * at.c[k];
+    }
+    if (along > s->found && is_inside(&at))
+        take_found(s, &at, (corner){.along = along});
 }
 
 /* What the cube shows, and how far the solid in it can reach. */
 static double look_at(search *s, csg_measure_cube *q)
 {
-    csg_halves halves;
     double most = farthest_of(s, q);
     s->cubes++;
-    if (q->state == CSG_CELL_SURFACE && csg_measure_enclose(s->walk, s->worker, q, &halves)) {
-        corner sure = reach_of_halves(s, q, &halves, true);
-        take_found(s, q, sure.along >= INFINITY ? corner_of(s, q) : sure);
-        most = fmin(most, reach_of_halves(s, q, &halves, false).along);
+    if (q->state == CSG_CELL_SURFACE) {
+        corner farthest = look_at_planes(s, q);
+        if (farthest.along > s->found + s->tolerance && q->state == CSG_CELL_SURFACE) {
+            const corner by_models = look_at_models(s, q);
+            farthest = by_models.along < farthest.along ? by_models : farthest;
+        }
+        most = fmin(most, farthest.along);
+        if (most > s->found + s->tolerance && q->state == CSG_CELL_SURFACE)
+            probe(s, q, &farthest);
     }
     if (q->state == CSG_CELL_INSIDE)
         take_found(s, q, corner_of(s, q));

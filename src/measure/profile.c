@@ -26,6 +26,9 @@ enum {
     MOST_SQUARES = 1 << 14 /* in all rounds: what takes more is measured by cubes */
 };
 
+/* Than the volume, second moments may be, of their size. */
+static const double MOMENTS_WIDER = 4;
+
 static const double PI = 3.14159265358979324;
 
 typedef struct sums {
@@ -38,6 +41,7 @@ typedef struct profile {
     csg_measure_walk *walk;
     int radius, along, across; /* axes of the frame */
     double share, arc_share;   /* what a square may leave open */
+    double squared[WEIGHTS];   /* of second moments: about as much more of them */
     double reach;              /* no place of the root is as far out */
     uint64_t squares, latest;
     bool out_of_memory;
@@ -165,6 +169,11 @@ static bool add_solid(profile *p, const csg_measure_cube *q, const csg_taylor_pi
         !graph.is_close)
         return false;
     add_integrals(p, q, graph.integrals, &graph, s);
+    for (int n = RRR; n <= RZZ; n++)
+        if (s->high[n] - s->low[n] > MOMENTS_WIDER * p->share * p->squared[n]) {
+            *s = (sums){.cut = 0};
+            return false;
+        }
     return true;
 }
 
@@ -250,6 +259,9 @@ static bool add_planes(profile *p, csg_measure_cube *q, const csg_taylor_pieces 
     if (section)
         arc.high = fmin(arc.high, csg_graph_arc_most(section, h, &turned, STRAY_MOST));
     bool is_last = q->level >= DEEPEST, is_close = arc.high - arc.low <= p->arc_share;
+    double least, most; /* of models, more than the share, but less than planes leave */
+    if (is_last && section && csg_graph_arc(section, h, &turned, &least, &most))
+        arc = (interval){fmax(arc.low, least), fmin(arc.high, most)};
     is_close = is_close && (has_solid || third_of(h) <= p->share * p->walk->half * p->walk->half);
     if (!is_last && !is_close)
         return false;
@@ -471,7 +483,7 @@ static double ratio_of(double tolerance, double low, double high)
 static void find_sums(profile *p, const csg_measure_cube *root, csg_profile_measures *out,
                       sums *best)
 {
-    static const double BETTER = 1.05, MOMENTS_WIDER = 4;
+    static const double BETTER = 1.05;
     double before = 0, arc_before = 0;
     for (bool more = true; more;) {
         p->sum = (sums){.cut = 0};
@@ -481,9 +493,11 @@ static void find_sums(profile *p, const csg_measure_cube *root, csg_profile_meas
         take_rounding(p);
         keep_best(&p->sum, best);
         double ratio = ratio_of(out->tolerance, best->low[R], best->high[R]);
-        for (int n = RRR; n <= RZZ; n++)
+        for (int n = RRR; n <= RZZ; n++) {
             ratio =
                 fmin(ratio, ratio_of(MOMENTS_WIDER * out->tolerance, best->low[n], best->high[n]));
+            p->squared[n] = fmin(best->high[n] / best->high[R], p->squared[n]);
+        }
         double arc_ratio = ratio_of(out->area_tolerance, best->arc_low, best->arc_high);
         out->is_close = ratio >= 1;
         out->is_area_close = arc_ratio >= 1;
@@ -507,6 +521,7 @@ csgm_status csg_measure_profile(csg_measure_walk *walk, csg_profile_measures *ou
         best.high[n] = INFINITY;
     }
     out->is_close = out->is_area_close = false;
+    p.squared[RRR] = p.squared[RZZ] = p.reach * p.reach;
     p.share = h * h * h * 0x1p-14;
     p.arc_share = h * h * 0x1p-9;
     find_sums(&p, &root, out, &best);

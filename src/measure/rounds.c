@@ -432,12 +432,15 @@ static bool choose_share(rounds *r, course *c, double ratio, uint64_t latest, ui
 static csgm_status go_on(rounds *r, uint64_t most_cubes)
 {
     static const double BETTER = 1.05; /* than the best round so far */
-    enum { VAIN = 2 };                 /* rounds that are not: rounding is what is left */
+    enum {
+        VAIN = 2, /* rounds that are not: rounding is what is left */
+        IDLE = 32
+    }; /* and that look at no cube, as all are full or as small */
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
     course so_far = {.falls = 0.5, .left = 0.05};
     double best = 0;
-    int vain = 0;
+    int vain = 0, idle = 0;
     for (bool more = true; more && status == CSGM_OK;) {
         uint64_t latest, looked = counts.cubes;
         r->most_of_one = 64 + (most_cubes - counts.cubes) / 16;
@@ -450,6 +453,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
             status = csg_context_no_memory(r->walk->context);
         else if (!done)
             status = csg_mesh_why_stopped(r->walk->watch);
+        idle = counts.cubes > looked ? 0 : idle + 1;
         if (ratio > BETTER * best) {
             best = ratio;
             vain = 0;
@@ -457,7 +461,7 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
             vain++;
         }
         take_course(&so_far, r->share, 1 / ratio);
-        more = ratio < 1 && vain < VAIN && counts.cubes < most_cubes &&
+        more = ratio < 1 && vain < VAIN && idle < IDLE && counts.cubes < most_cubes &&
                choose_share(r, &so_far, ratio, latest, most_cubes - counts.cubes);
     }
     return status;
@@ -473,6 +477,8 @@ csgm_status csg_measure_rounds(csg_measure_walk *walk, const csg_rounds_job *job
            ledger_count = walk->count + walk->worker_count,
            ledger_bytes = ledger_count * sizeof(csg_ledger), image_bytes = count * sizeof(image);
     rounds r = {.job = job, .walk = walk, .share = job->share};
+    if (walk->symmetries.count) /* images are alike by what floats tell, and leave room for */
+        walk->exact.parameters = NULL;
     csgm_status status;
     r.tallies = csg_memory_alloc(memory, bytes);
     r.accounts = csg_memory_alloc(memory, account_bytes);

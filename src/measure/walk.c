@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/pool.h"
+#include "field/field.h"
 #include "field/kernels/dispatch.h"
 #include "mesh/distance/slopes.h"
 
@@ -179,11 +180,18 @@ bool csg_measure_walk_open(csg_measure_walk *w, csgm_context *context, const csg
     return begin_workers(w, (float)rounding);
 }
 
+/* Numbers that are no floats are the scene's. */
+static bool find_exact(csg_measure_walk *w)
+{
+    w->tape.exact = &w->exact;
+    return csg_field_exact(w->context, w->field, &w->tapes, &w->exact);
+}
+
 csgm_status csg_measure_walk_begin(csg_measure_walk *w, csgm_context *context,
                                    const csgm_field *field, csg_mesh_watch *watch)
 {
-    bool done = csg_measure_walk_open(w, context, field, watch) &&
-                csg_axis_find(&w->tape, field->parameter_count, &w->tapes, &w->axis) &&
+    bool done = csg_measure_walk_open(w, context, field, watch) && find_exact(w) &&
+                csg_axis_find(&w->tape, field->parameter_count, &w->exact, &w->tapes, &w->axis) &&
                 csg_symmetries_find(&w->tape, field->parameter_count, &w->tapes, &w->symmetries);
     return done ? find_frontier(w) : csg_context_no_memory(context);
 }

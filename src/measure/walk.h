@@ -34,6 +34,7 @@ typedef struct csg_measure_walk {
     csgm_context *context;
     const csgm_field *field;
     csg_tape tape;             /* of the field, with room for what it is symmetrical to */
+    csg_tape_exact exact;      /* of the tape, but where images of cubes count (rounds.h) */
     csg_symmetries symmetries; /* of the solid, where there is a frontier */
     int axis;                  /* that all of it turns about, or CSG_AXIS_NONE */
     csg_mesh_watch *watch;

@@ -7,6 +7,7 @@
 #define TEST_GRAPH_SUPPORT_H
 
 #include "field/taylor/tape_taylor.h"
+#include "mesh/mesh_support.h"
 
 /* The model's polynomial and its gradient at x, and how far the function may be from these. */
 double graph_polynomial_at(const csg_taylor *f, const double x[3]);
@@ -28,5 +29,8 @@ typedef struct graph_field {
  * cube and its parts do not agree. False: there is no graph in the cube or a part of it. */
 bool graph_try_integrals(const graph_field *f, const double c[3], double half);
 bool graph_try_area(const graph_field *f, const double c[3], double half);
+
+/* Every other time: models are of the scene's numbers, not of the tape's floats. */
+void graph_take_numbers(mesh_case *m);
 
 #endif

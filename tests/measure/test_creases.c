@@ -202,6 +202,7 @@ static void fillets_with_operands_apart_have_models(void **state)
     csg_node_id ids[] = {make_box(&m, 4, 4, 1), moved(&m, make_box(&m, 4, 4, 1), 0, 0, 9),
                          make_cylinder(&m, 2, 9)};
     mesh_case_compile(&m, csg_build_operator(&m.builder, CSG_NODE_UNION, fillet, ids, 3, NOWHERE));
+    graph_take_numbers(&m);
     const csg_vec3 o = m.field->center;
     const double c[3] = {CENTRE[0] + 0.2 - o.x, CENTRE[1] - o.y, CENTRE[2] + 0.2 - o.z};
     assert_true(csg_tape_taylor_pieces(&m.field->tape, c, csg_enclosure_radius(HALF), &f));
@@ -219,6 +220,7 @@ static int count_models(csg_blend blend, double beyond)
     csg_node_id box = make_box(&m, 1, 1, 1);
     csg_node_id plane = make_half_space(&m, 0.8, 0.6, 0, 1.36 + beyond);
     mesh_case_compile(&m, joined(&m, CSG_NODE_INTERSECTION, blend, box, plane));
+    graph_take_numbers(&m);
     const csg_vec3 o = m.field->center;
     const double c[3] = {CENTRE[0] - o.x, CENTRE[1] - o.y, CENTRE[2] - o.z};
     double radius = csg_enclosure_radius(HALF);

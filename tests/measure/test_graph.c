@@ -217,6 +217,7 @@ static void models_hold(void **state)
         csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 4));
         assert_true(root != CSG_NODE_NONE);
         mesh_case_compile(&m, root);
+        graph_take_numbers(&m);
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
@@ -251,6 +252,7 @@ static void blends_hold(void **state)
         has_fillets = KINDS[i % 5] == CSG_BLEND_FILLET;
         csg_blend blend = {KINDS[i % 5], csg_random_uniform(&random, 0.05, 0.4), false};
         mesh_case_compile(&m, joined(&m, JOINS[i % 3], blend, ids[0], ids[1]));
+        graph_take_numbers(&m);
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
@@ -276,6 +278,7 @@ static void ellipsoids_have_models(void **state)
         csg_blend blend = {CSG_BLEND_ROUND, csg_random_uniform(&random, 0.1, 0.4), false};
         solid = joined(&m, CSG_NODE_INTERSECTION, blend, posed_anyhow(&m, solid, &random), end);
         mesh_case_compile(&m, solid);
+        graph_take_numbers(&m);
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
@@ -301,6 +304,7 @@ static void flush_solids_have_models(void **state)
             i % 2 ? make_half_space(&m, 0, 0, 1, h + round) : make_cylinder(&m, r + round, h + 1);
         csg_node_id solid = joined(&m, CSG_NODE_INTERSECTION, SHARP, cylinder, end);
         mesh_case_compile(&m, posed_anyhow(&m, solid, &random));
+        graph_take_numbers(&m);
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }
@@ -330,6 +334,7 @@ static void warps_hold(void **state)
         if (warp.kind == CSG_WARP_ELBOW)
             node = csg_build_cut(&m.builder, node, (csg_box){{-3, -4, -4}, {6, 4, 4}}, NOWHERE);
         mesh_case_compile(&m, posed_anyhow(&m, node, &random));
+        graph_take_numbers(&m);
         try_scene(&m, &random, &seen);
         mesh_case_end(&m);
     }

@@ -19,7 +19,7 @@ static int axis_of(const solid *s)
     csg_arena arena;
     csg_tape tape = s->field->tape;
     csg_arena_init(&arena, &s->field->context->memory);
-    assert_true(csg_axis_find(&tape, s->field->parameter_count, &arena, &axis));
+    assert_true(csg_axis_find(&tape, s->field->parameter_count, NULL, &arena, &axis));
     csg_arena_reset(&arena);
     return axis;
 }
@@ -44,6 +44,7 @@ static void test_axes(void **state)
         {"capsule([-3, 0, 0], [5, 0, 0], 2);", 0},
         {"intersection() { sphere(5); plane([1, 0, 0], 2); }", 0},
         {"difference(blend = 1) { cylinder(h = 10, r = 5); sphere(3); }", 2},
+        {"union(blend = fillet(1)) { cylinder(h = 10, r = 2); cylinder(h = 2, r = 6); }", 2},
         /* these do not */
         {"cube(5);", CSG_AXIS_NONE},
         {"torus(r = 5, tube = 1, angle = 200);", CSG_AXIS_NONE},
@@ -120,6 +121,17 @@ static void test_closed_forms(void **state)
         assert_true(m.inertia[2].high - m.inertia[2].low <= 1e-3 * m.inertia[2].high);
         assert_true(m.cubes < 8000); /* squares, and cubes for the bounds */
     }
+}
+
+/* As closely as doubles say, though no float is such a number. */
+static void test_numbers_that_are_no_floats(void **state)
+{
+    csgm_measures m =
+        measures_of("translate([0, 0, 0.1]) cylinder(h = 10.1, r = 3.3);", 1e-9, 1 << 20);
+    assert_holds(m.volume, PI * 3.3 * 3.3 * 10.1);
+    assert_holds(m.area, PI * 2 * 3.3 * (3.3 + 10.1));
+    assert_holds(m.centroid[2], 0.1 + 10.1 / 2);
+    assert_true(m.volume.high - m.volume.low <= 1e-9 * m.volume.high);
 }
 
 /* ---- random solids -----------------------------------------------------------------------------
@@ -236,7 +248,8 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_axes), cmocka_unit_test(test_closed_forms),
-        cmocka_unit_test(test_against_cubes), cmocka_unit_test(test_any_allocation_may_fail)};
+        cmocka_unit_test(test_numbers_that_are_no_floats), cmocka_unit_test(test_against_cubes),
+        cmocka_unit_test(test_any_allocation_may_fail)};
     test_take_search(argc, argv);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,6 +143,8 @@ bool csg_compile_leaf(compiler *c, const csg_leaf *l, uint32_t color, uint32_t w
     csg_tape_node *node = push_node(c);
     if (!node || !csg_compile_push(c, values, count, &node->parameters))
         return false;
+    if (c->exact && node->parameters + count <= c->exact_count)
+        csg_leaf_numbers(l, c->exact + node->parameters);
     node->op = l->op;
     node->frame = (uint8_t)l->frame;
     node->warp = warp;
@@ -200,7 +202,7 @@ static void mark_join(compiler *c, task *group)
     group->written++;
 }
 
-static bool begin_blend(compiler *c, task *t)
+static bool push_blend(compiler *c, task *t)
 {
     if (csg_blend_is_fillet(t->blend.kind))
         return csg_compile_fillet(c, t);
@@ -210,6 +212,17 @@ static bool begin_blend(compiler *c, task *t)
     if (csg_blend_is_orthogonal(t->blend.kind))
         values[CSG_OPERATOR_N] = (float)t->frame.raise;
     return csg_compile_push(c, values, CSG_OPERATOR_PARAMETERS, &t->parameters);
+}
+
+/* With its length as the scene says it, where that is asked for. */
+static bool begin_blend(compiler *c, task *t)
+{
+    bool has_length = !csg_blend_is_sharp(t->blend.kind) && !csg_blend_is_orthogonal(t->blend.kind);
+    if (!push_blend(c, t))
+        return false;
+    if (has_length && c->exact && t->parameters + CSG_OPERATOR_PARAMETERS <= c->exact_count)
+        c->exact[t->parameters + CSG_OPERATOR_N] = t->blend.n;
+    return true;
 }
 
 static uint8_t op_of(const task *t)
@@ -545,46 +558,6 @@ static bool compile_tree(compiler *c)
 /* ---- the field --------------------------------------------------------------------------------
  */
 
-static void *keep(csg_arena *arena, const void *data, size_t bytes)
-{
-    void *copy = csg_arena_alloc(arena, bytes);
-    if (copy && bytes)
-        memcpy(copy, data, bytes);
-    return copy;
-}
-
-/* Copies tape arrays into the field's arena. */
-static bool keep_tape(csgm_field *field, const csg_tape_node *nodes, size_t node_count,
-                      const float *parameters, size_t parameter_count, const csg_color *colors,
-                      size_t color_count)
-{
-    field->tape.nodes = keep(&field->arena, nodes, node_count * sizeof *nodes);
-    field->tape.parameters = keep(&field->arena, parameters, parameter_count * sizeof *parameters);
-    field->tape.colors = keep(&field->arena, colors, color_count * sizeof *colors);
-    field->tape.count = (uint32_t)node_count;
-    field->parameter_count = parameter_count;
-    field->color_count = (uint32_t)color_count;
-    if (!field->tape.nodes || !field->tape.parameters || !field->tape.colors)
-        return false;
-    field->depth = csg_tape_depth(&field->tape);
-    return true;
-}
-
-static bool keep_formulas(compiler *c)
-{
-    csgm_field *field = c->field;
-    field->tape.steps = keep(&field->arena, c->steps, c->step_count * sizeof *c->steps);
-    field->tape.formulas = keep(&field->arena, c->formulas, c->formula_count * sizeof *c->formulas);
-    field->tape.warps = keep(&field->arena, c->warps, c->warp_count * sizeof *c->warps);
-    field->tape.shapes = c->scene->shape_count ? c->scene->shapes : NULL; /* NULL: none */
-    if (field->has_materials) {
-        field->materials = keep(&field->arena, c->materials, c->color_count * sizeof *c->materials);
-        if (!field->materials)
-            return false;
-    }
-    return field->tape.steps && field->tape.formulas && field->tape.warps;
-}
-
 /* Meets all that is written so far with a box around the field's centre. */
 static bool write_clip(compiler *c, csg_box box)
 {
@@ -623,10 +596,21 @@ static bool compile_field(compiler *c, const csg_box *clip)
     field->tape.lipschitz = (float)csg_scene_lipschitz(scene);
     if (clip)
         field->tape.lipschitz = fmaxf(field->tape.lipschitz, 1);
-    return compile_tree(c) && (!clip || write_clip(c, *clip)) && keep_formulas(c) &&
-           keep_tape(field, c->nodes, c->node_count, c->parameters, c->parameter_count, c->colors,
-                     c->color_count) &&
+    return compile_tree(c) && (!clip || write_clip(c, *clip)) && csg_compile_keep(c) &&
            csg_compile_waver(&c->context->memory, &field->tape);
+}
+
+static void release(compiler *c)
+{
+    csg_memory *memory = &c->context->memory;
+    csg_memory_release(memory, c->nodes, c->node_capacity * sizeof *c->nodes);
+    csg_memory_release(memory, c->parameters, c->parameter_capacity * sizeof *c->parameters);
+    csg_memory_release(memory, c->colors, c->color_capacity * sizeof *c->colors);
+    csg_memory_release(memory, c->materials, c->material_capacity * sizeof *c->materials);
+    csg_memory_release(memory, c->tasks, c->task_capacity * sizeof *c->tasks);
+    csg_memory_release(memory, c->steps, c->step_capacity * sizeof *c->steps);
+    csg_memory_release(memory, c->formulas, c->formula_capacity * sizeof *c->formulas);
+    csg_memory_release(memory, c->warps, c->warp_capacity * sizeof *c->warps);
 }
 
 static csgm_status compile(csgm_context *context, const csgm_scene *scene, const csg_box *clip,
@@ -634,21 +618,38 @@ static csgm_status compile(csgm_context *context, const csgm_scene *scene, const
 {
     compiler c = {.context = context, .scene = scene, .field = csg_field_create(context)};
     bool done = c.field && compile_field(&c, clip);
-    csg_memory *memory = &context->memory;
-    csg_memory_release(memory, c.nodes, c.node_capacity * sizeof *c.nodes);
-    csg_memory_release(memory, c.parameters, c.parameter_capacity * sizeof *c.parameters);
-    csg_memory_release(memory, c.colors, c.color_capacity * sizeof *c.colors);
-    csg_memory_release(memory, c.materials, c.material_capacity * sizeof *c.materials);
-    csg_memory_release(memory, c.tasks, c.task_capacity * sizeof *c.tasks);
-    csg_memory_release(memory, c.steps, c.step_capacity * sizeof *c.steps);
-    csg_memory_release(memory, c.formulas, c.formula_capacity * sizeof *c.formulas);
-    csg_memory_release(memory, c.warps, c.warp_capacity * sizeof *c.warps);
+    release(&c);
     if (!done) {
         csg_field_destroy(c.field);
         return csg_context_no_memory(context);
     }
     *out = c.field;
     return CSGM_OK;
+}
+
+/* The field is compiled once more, into one that is forgotten. */
+bool csg_field_exact(csgm_context *context, const csgm_field *field, csg_arena *arena,
+                     csg_tape_exact *out)
+{
+    size_t count = field->parameter_count;
+    double *exact = csg_arena_alloc(arena, (count + 1) * sizeof *exact);
+    compiler c = {.context = context,
+                  .scene = field->scene,
+                  .field = csg_field_create(context),
+                  .exact = exact,
+                  .exact_count = count};
+    *out = (csg_tape_exact){NULL};
+    for (size_t i = 0; exact && i < count; i++)
+        exact[i] = (double)field->tape.parameters[i];
+    bool done = exact && c.field && compile_field(&c, NULL);
+    bool is_same = done && c.parameter_count == count &&
+                   !memcmp(c.parameters, field->tape.parameters, count * sizeof *c.parameters);
+    if (is_same) /* not a part of the scene, or one that was cut */
+        out->parameters = exact;
+    release(&c);
+    if (c.field)
+        csg_field_destroy(c.field);
+    return done;
 }
 
 csgm_status csg_field_compile(csgm_context *context, const csgm_scene *scene, csgm_field **out)

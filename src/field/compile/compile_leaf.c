@@ -54,6 +54,9 @@ void csg_leaf_primitive(csg_leaf *l, const csg_affine *at, double factor, bool n
     l->magnitude = l->magnitude * fabs(l->sigma) + csg_vec3_norm(l->offset);
 }
 
+/* Doubles have some units in the last place of their own. */
+static const double OF_DOUBLES = 0x1p-46;
+
 /* The rounding error of a value is a few units in the last place of the lengths in it. */
 static double rounding_of(double magnitude)
 {
@@ -75,10 +78,10 @@ static double norm_of_rounding(const double *values, int count)
 
 /* What floats make of the parameters (tape.h, off and turned). An own one, be it a length or a
  * direction's part, moves values by its relative error times the leaf's lengths; those of a plane
- * are its normal. The doubles have some units in the last place of their own. */
-static void find_rounding(const csg_leaf *l, float *off, float *turned)
+ * are its normal. */
+static void find_rounding(const csg_leaf *l, const double *doubles, float *off, float *turned)
 {
-    static const double OF_DOUBLES = 0x1p-46, UP = 1 + 1e-6;
+    static const double UP = 1 + 1e-6;
     bool is_plane = csg_op_has(l->op, CSG_TRAIT_LINEAR);
     double size = fabs(l->sigma), here = rounding_in(l->raise), along = 0;
     if (l->frame == CSG_FRAME_OFFSET) {
@@ -93,30 +96,41 @@ static void find_rounding(const csg_leaf *l, float *off, float *turned)
     for (int i = is_plane ? 3 : 0; i < l->own_count; i++)
         if (rounding_in(l->own[i]) > 0)
             here += size * rounding_in(l->own[i]) / fabs(l->own[i]) * l->own_magnitude;
-    here += OF_DOUBLES * (l->magnitude + fabs(l->raise));
-    *off = (float)(here * UP);
-    *turned = (float)((along + OF_DOUBLES * size) * UP);
+    *off = (float)((here + doubles[CSG_LEAF_OFF]) * UP);
+    *turned = (float)((along + doubles[CSG_LEAF_TURNED]) * UP);
+}
+
+size_t csg_leaf_numbers(const csg_leaf *l, double values[CSG_LEAF_MOST_PARAMETERS])
+{
+    size_t count = CSG_LEAF_FRAME;
+    values[CSG_LEAF_SIGMA] = l->sigma;
+    values[CSG_LEAF_RAISE] = l->raise;
+    values[CSG_LEAF_SLACK] = rounding_of(l->magnitude + fabs(l->raise));
+    values[CSG_LEAF_COLOR] = 0;
+    values[CSG_LEAF_OFF] = OF_DOUBLES * (l->magnitude + fabs(l->raise));
+    values[CSG_LEAF_TURNED] = OF_DOUBLES * fabs(l->sigma);
+    if (l->frame == CSG_FRAME_OFFSET) {
+        values[count++] = l->offset.x;
+        values[count++] = l->offset.y;
+        values[count++] = l->offset.z;
+    } else {
+        for (int i = 0; i < 9; i++)
+            values[count++] = l->to_own.m[i / 3][i % 3];
+        for (int i = 0; i < 3; i++)
+            values[count++] = l->to_own.t[i];
+    }
+    for (int i = 0; i < l->own_count; i++)
+        values[count++] = l->own[i];
+    return count;
 }
 
 size_t csg_leaf_pack(const csg_leaf *l, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS])
 {
-    size_t count = CSG_LEAF_FRAME;
-    values[CSG_LEAF_SIGMA] = (float)l->sigma;
-    values[CSG_LEAF_RAISE] = (float)l->raise;
-    values[CSG_LEAF_SLACK] = (float)rounding_of(l->magnitude + fabs(l->raise));
+    double numbers[CSG_LEAF_MOST_PARAMETERS];
+    size_t count = csg_leaf_numbers(l, numbers);
+    for (size_t i = 0; i < count; i++)
+        values[i] = (float)numbers[i];
     values[CSG_LEAF_COLOR] = (float)color;
-    find_rounding(l, &values[CSG_LEAF_OFF], &values[CSG_LEAF_TURNED]);
-    if (l->frame == CSG_FRAME_OFFSET) {
-        values[count++] = (float)l->offset.x;
-        values[count++] = (float)l->offset.y;
-        values[count++] = (float)l->offset.z;
-    } else {
-        for (int i = 0; i < 9; i++)
-            values[count++] = (float)l->to_own.m[i / 3][i % 3];
-        for (int i = 0; i < 3; i++)
-            values[count++] = (float)l->to_own.t[i];
-    }
-    for (int i = 0; i < l->own_count; i++)
-        values[count++] = (float)l->own[i];
+    find_rounding(l, numbers, &values[CSG_LEAF_OFF], &values[CSG_LEAF_TURNED]);
     return count;
 }

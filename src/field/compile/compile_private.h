@@ -49,6 +49,7 @@ typedef struct csg_compiler {
     csgm_field *field;
     csg_tape_node *nodes;
     float *parameters;
+    double *exact;                 /* as many, where they are asked for; else NULL */
     csg_color *colors, *materials; /* as many of both */
     csg_compile_task *tasks;
     csg_tape_step *steps;
@@ -57,7 +58,7 @@ typedef struct csg_compiler {
     size_t warp_count, warp_capacity;
     size_t step_count, step_capacity, formula_count, formula_capacity;
     size_t node_count, node_capacity, parameter_count, parameter_capacity, color_count,
-        color_capacity, material_capacity, task_count, task_capacity;
+        color_capacity, exact_count, material_capacity, task_count, task_capacity;
 } csg_compiler;
 
 /* Where a node's own frame lies, relative to the field's centre or in the frame below the warp. */
@@ -71,6 +72,8 @@ bool csg_compile_fillet(csg_compiler *c, csg_compile_task *t);
 uint32_t csg_compile_reaches(const csg_compiler *c, const csg_compile_task *t);
 /* Behind the operands of a fillet: the planes at which it ends; *count of them. */
 bool csg_compile_planes(csg_compiler *c, const csg_compile_task *t, uint32_t *count);
+/* Copies all that was written into the field. False: no memory. */
+bool csg_compile_keep(const csg_compiler *c);
 /* Sets `waver` of a whole tape, and `turns` where it has a fillet. False: no memory. */
 bool csg_compile_waver(csg_memory *memory, csg_tape *tape);
 

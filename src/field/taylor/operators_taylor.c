@@ -46,7 +46,7 @@ static bool find_level_of_two(const csg_taylor_walk *w, const csg_taylor *a, con
     *out = csg_taylor_walk_mean(a, b, -turn, &root);
     csg_taylor_walk_share(a, b, 0.5 * turn * d.value / root.value, out);
     *out = csg_taylor_raised(*out, turn * width);
-    csg_taylor_walk_add_length(width, out);
+    csg_taylor_walk_add_length(w, width, out);
     return true;
 }
 
@@ -73,7 +73,7 @@ static bool find_level(const csg_taylor_walk *w, const csg_taylor_operand *of,
     if (!csg_taylor_root(&under, w->radius, &root))
         return false;
     *out = csg_taylor_raised(csg_taylor_sum(&mean, -turn, &root), turn * width);
-    csg_taylor_walk_add_length(width, out);
+    csg_taylor_walk_add_length(w, width, out);
     return true;
 }
 
@@ -152,8 +152,9 @@ enum { OPEN_MOST = 2 /* operands of which it is open whether they touch */ };
 static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
 {
     csg_taylor_operand *of = &w->stack[w->top - node->arity];
-    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, off = 0x1p-23 * width;
+    double width = csg_tape_number(w->tape, node->parameters + CSG_OPERATOR_N);
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1,
+           off = 2 * csg_taylor_walk_length_off(w, width);
     uint32_t order[CSG_TAYLOR_NODES], may[CSG_TAYLOR_NODES], open[OPEN_MOST], m,
         may_count = 0, count = 0, open_count = 0;
     csg_taylor level, most;
@@ -225,7 +226,7 @@ static bool combine_round(csg_taylor_walk *w, const csg_tape_node *node)
 static csg_taylor half_sum_of_squares(const csg_taylor_walk *w, const csg_taylor *over,
                                       uint32_t count, double width, double turn)
 {
-    static const double OF_LENGTH = 0x1p-24, OF_SHARES = 0x1p-22;
+    const double of_length = csg_taylor_walk_length_off(w, 1), of_shares = 4 * of_length;
     csg_taylor sum = csg_taylor_constant(-width * width);
     double most = 2 * width, shares = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -236,8 +237,8 @@ static csg_taylor half_sum_of_squares(const csg_taylor_walk *w, const csg_taylor
         shares += 1 + largest / width;
     }
     sum = csg_taylor_scaled(&sum, 0.5 * turn / width);
-    sum.error += OF_LENGTH * most;
-    sum.turned += OF_SHARES * shares;
+    sum.error += of_length * most;
+    sum.turned += of_shares * shares;
     return sum;
 }
 
@@ -247,8 +248,9 @@ static csg_taylor half_sum_of_squares(const csg_taylor_walk *w, const csg_taylor
 static bool combine_signs(csg_taylor_walk *w, const csg_tape_node *node)
 {
     csg_taylor_operand *of = &w->stack[w->top - node->arity];
-    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, off = 0x1p-23 * width;
+    double width = csg_tape_number(w->tape, node->parameters + CSG_OPERATOR_N);
+    double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1,
+           off = 2 * csg_taylor_walk_length_off(w, width);
     csg_taylor over[CSG_TAYLOR_NODES], open[OPEN_MOST];
     uint32_t open_at[OPEN_MOST], open_count = 0, count = 0, only = 0;
     bool is_creased = false, possible[1 << OPEN_MOST] = {true, true, true, true};
@@ -301,7 +303,7 @@ static bool prefers_squares(const csg_taylor_walk *w, const csg_tape_node *node)
 {
     static const double SMALL = 0.6;
     const csg_taylor_operand *of = &w->stack[w->top - node->arity];
-    double width = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double width = csg_tape_number(w->tape, node->parameters + CSG_OPERATOR_N);
     double turn = node->op == CSG_OP_ROUND_UNION ? 1 : -1, apart = 0, bent = 0;
     uint32_t may[CSG_TAYLOR_NODES], count = 0;
     if (!(w->radius < SMALL * width))
@@ -386,7 +388,7 @@ static bool fillet_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_
     csg_taylor_walk_share(
         a, b, 0.5 * turn * rest.value * inverse.value * difference.value / root.value, out);
     *out = csg_taylor_raised(*out, turn * r);
-    csg_taylor_walk_add_length(r, out);
+    csg_taylor_walk_add_length(w, r, out);
     return true;
 }
 
@@ -397,7 +399,7 @@ static bool fillet_two(const csg_taylor_walk *w, const csg_taylor *a, const csg_
 static bool fillet_sign(const csg_taylor_walk *w, const csg_taylor *a, const csg_taylor *b,
                         const csg_taylor *d, double r, double turn, csg_taylor *out)
 {
-    static const double OF_LENGTH = 0x1p-24, OF_SHARES = 0x1p-22;
+    const double of_length = csg_taylor_walk_length_off(w, 1), of_shares = 4 * of_length;
     csg_taylor s = csg_taylor_sum(a, 1, b), x = csg_taylor_sum(a, -1, b);
     s = csg_taylor_raised(csg_taylor_scaled(&s, 0.5 * turn), r);
     double most_s = csg_taylor_walk_most(w, &s), most_d = csg_taylor_walk_most(w, d);
@@ -411,8 +413,8 @@ static bool fillet_sign(const csg_taylor_walk *w, const csg_taylor *a, const csg
     double scale = 0.5 / (d->value * s.value);
     *out = csg_taylor_sum(&squares, 0.25, &under);
     *out = csg_taylor_scaled(out, turn * scale);
-    out->error += OF_LENGTH * r * scale * most_d * 2 * (most_s + r);
-    out->turned += OF_SHARES * scale * 2 * (most_d * r + (most_s + r) * r * csg_norm3(d->slope));
+    out->error += of_length * r * scale * most_d * 2 * (most_s + r);
+    out->turned += of_shares * scale * 2 * (most_d * r + (most_s + r) * r * csg_norm3(d->slope));
     return true;
 }
 
@@ -570,7 +572,7 @@ bool csg_taylor_walk_fillet(csg_taylor_walk *w, const csg_tape_node *node, bool 
 {
     const float *parameters = w->tape->parameters + node->parameters;
     csg_taylor_operand *of = &w->stack[w->top - node->arity];
-    double r = (double)parameters[CSG_OPERATOR_N], more = 0;
+    double r = csg_tape_number(w->tape, node->parameters + CSG_OPERATOR_N), more = 0;
     double turn = node->op == CSG_OP_FILLET_UNION ? 1 : -1;
     uint32_t order[CSG_TAYLOR_NODES], count = node->arity - node->planes;
     csg_taylor d = {.value = 0}, out = {.value = 0};

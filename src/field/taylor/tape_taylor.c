@@ -32,8 +32,7 @@ static bool find_leaf(const csg_taylor_walk *w, uint32_t index, int way, int *wa
     out->condition_count = w->may_decide ? choice.condition_count : 0;
     for (int i = 0; i < out->condition_count; i++) {
         out->conditions[i] = choice.conditions[i];
-        out->conditions[i].error +=
-            csg_taylor_walk_rounding(w, w->tape->parameters + w->tape->nodes[index].parameters);
+        out->conditions[i].error += csg_taylor_walk_rounding(w, index);
     }
     return isfinite(o->f.value + o->f.error + o->f.quartic);
 }
@@ -112,8 +111,7 @@ static int decider(csg_taylor_walk *w, csg_taylor_operand *a, const csg_taylor_o
 static bool blend_two(const csg_taylor_walk *w, const csg_tape_node *node, const csg_taylor *a,
                       const csg_taylor *b, double turn, csg_taylor *out)
 {
-    const float *parameters = w->tape->parameters + node->join_parameters;
-    double n = (double)parameters[CSG_OPERATOR_N];
+    double n = csg_tape_number(w->tape, node->join_parameters + CSG_OPERATOR_N);
     csg_taylor x = csg_taylor_sum(a, -1, b), excess, constant;
     const csg_taylor *const pair[2] = {&x, &constant};
     switch (node->join_blend) {
@@ -122,7 +120,7 @@ static bool blend_two(const csg_taylor_walk *w, const csg_tape_node *node, const
         excess = csg_taylor_raised(csg_taylor_scaled(&excess, 1 / n), n / 16);
         *out = csg_taylor_walk_mean(a, b, turn, &excess);
         csg_taylor_walk_share(a, b, 2 * turn * x.value / n, out);
-        csg_taylor_walk_add_length(n, out);
+        csg_taylor_walk_add_length(w, n, out);
         return true;
     case CSG_BLEND_HYPERBOLA:
         constant = csg_taylor_constant(sqrt(n));
@@ -130,7 +128,7 @@ static bool blend_two(const csg_taylor_walk *w, const csg_tape_node *node, const
             return false;
         *out = csg_taylor_walk_mean(a, b, 0.5 * turn, &excess);
         csg_taylor_walk_share(a, b, 0.5 * turn * x.value / excess.value, out);
-        csg_taylor_walk_add_length(sqrt(n), out);
+        csg_taylor_walk_add_length(w, sqrt(n), out);
         return true;
     default:
         return false;

@@ -9,6 +9,11 @@
 #include "scene/primitives/curve.h"
 #include "scene/primitives/kinds.h"
 
+static bool is_exact(const csg_taylor_walk *w)
+{
+    return w->tape->exact && w->tape->exact->parameters;
+}
+
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -17,9 +22,11 @@
 static bool place(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with_slopes,
                   csg_smooth_leaf *l, double *off)
 {
-    const float *parameters = w->tape->parameters + leaf->parameters;
-    const float *frame = parameters + CSG_LEAF_FRAME;
+    enum { PLACE = 12, SHIFT = 3 };
     bool is_offset = leaf->frame == CSG_FRAME_OFFSET;
+    double frame[PLACE];
+    for (uint32_t i = 0; i < (is_offset ? SHIFT : PLACE); i++)
+        frame[i] = csg_tape_number(w->tape, leaf->parameters + CSG_LEAF_FRAME + i);
     l->radius = w->radius;
     l->with_slopes = with_slopes;
     if (!leaf->warp && !is_offset)
@@ -27,36 +34,45 @@ static bool place(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with
     else if (!csg_taylor_warped(w->tape, leaf->warp, w->c, l, off))
         return false;
     for (int i = 0; i < 3 && is_offset; i++)
-        l->p[i].f.value -= (double)frame[i];
+        l->p[i].f.value -= frame[i];
     if (leaf->warp && !is_offset)
         csg_taylor_placed(frame, l);
     const csg_taylor *p[3] = {&l->p[0].f, &l->p[1].f, &l->p[2].f};
-    l->own = csg_tape_own(w->tape, leaf);
     l->reach = csg_taylor_change_of(p, 3, w->radius).most;
     return true;
 }
 
-double csg_taylor_walk_rounding(const csg_taylor_walk *w, const float *parameters)
+double csg_taylor_walk_rounding(const csg_taylor_walk *w, uint32_t leaf)
 {
+    uint32_t at = w->tape->nodes[leaf].parameters;
     static const double OF_DOUBLES = 0x1p-26 /* of the slack */, OF_PLACE = 0x1p-44;
     double far = fabs(w->c[0]) + fabs(w->c[1]) + fabs(w->c[2]) + w->radius;
-    return (double)parameters[CSG_LEAF_OFF] + (double)parameters[CSG_LEAF_TURNED] * far +
-           OF_DOUBLES * (double)parameters[CSG_LEAF_SLACK] + OF_PLACE * far;
+    return csg_tape_number(w->tape, at + CSG_LEAF_OFF) +
+           csg_tape_number(w->tape, at + CSG_LEAF_TURNED) * far +
+           OF_DOUBLES * (double)w->tape->parameters[at + CSG_LEAF_SLACK] + OF_PLACE * far;
 }
 
 bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_slopes,
                           csg_smooth_choice *choice, csg_smooth *out)
 {
-    static const double OF_DIRECTIONS = 1e-6; /* by floats of own parameters */
-    const csg_tape_node *leaf = &w->tape->nodes[index];
-    const float *parameters = w->tape->parameters + leaf->parameters;
-    double raise = (double)parameters[CSG_LEAF_RAISE], sigma = (double)parameters[CSG_LEAF_SIGMA];
+    static const double OF_FLOATS = 1e-6, OF_DOUBLES = 1e-12; /* of own directions */
+    const csg_tape *tape = w->tape;
+    const csg_tape_node *leaf = &tape->nodes[index];
+    double raise = csg_tape_number(tape, leaf->parameters + CSG_LEAF_RAISE),
+           sigma = csg_tape_number(tape, leaf->parameters + CSG_LEAF_SIGMA);
+    double directions = is_exact(w) ? OF_DOUBLES : OF_FLOATS;
+    double turned = csg_tape_number(tape, leaf->parameters + CSG_LEAF_TURNED);
+    double numbers[CSG_LEAF_MOST_OWN];
     csg_smooth_leaf l;
     csg_smooth own;
     double off = 0;
     if (!csg_op_is_primitive(leaf->op) || csg_node_is_curve(csg_op_node_kind(leaf->op)) ||
         !place(w, leaf, with_slopes, &l, &off))
         return false;
+    const csg_primitive *primitive = csg_primitive_of(csg_op_node_kind(leaf->op));
+    for (int i = 0; i < primitive->own_count; i++)
+        numbers[i] = csg_tape_number(tape, csg_tape_own_at(leaf) + (uint32_t)i);
+    l.own = numbers;
     l.choice = choice;
     if (choice) {
         choice->signs = w->signs[index] && raise * sigma >= 0;
@@ -68,17 +84,17 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_sl
         choice->is_creased = false;
         choice->condition_count = 0;
     }
-    if (!csg_primitive_of(csg_op_node_kind(leaf->op))->smooth(&l, &own))
+    if (!primitive->smooth(&l, &own))
         return false;
     *out = csg_smooth_line(&l, raise, sigma, &own);
     double stretch = choice ? choice->stretch : 1;
-    double moved = stretch * (csg_taylor_walk_rounding(w, parameters) + off);
+    double moved = stretch * (csg_taylor_walk_rounding(w, index) + off);
     out->f.error += moved;
     /* gradients, where what is curved is moved by that */
-    out->f.turned += stretch * (OF_DIRECTIONS + (double)parameters[CSG_LEAF_TURNED]) +
+    out->f.turned += stretch * (directions + turned) +
                      2 * moved * csg_taylor_stray(&out->f, w->radius) / w->radius;
     if (leaf->warp) /* as far as what is curved turns by that, twice */
-        out->f.turned += stretch * (OF_DIRECTIONS + 2 * off / w->radius);
+        out->f.turned += stretch * (OF_FLOATS + 2 * off / w->radius);
     return true;
 }
 
@@ -99,10 +115,16 @@ void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double a
     f->turned += STEEPEST * apart / w->radius;
 }
 
-void csg_taylor_walk_add_length(double length, csg_taylor *f)
+double csg_taylor_walk_length_off(const csg_taylor_walk *w, double length)
 {
-    f->error += 0x1p-24 * length;
-    f->turned += 0x1p-22;
+    static const double OF_FLOATS = 0x1p-24, OF_DOUBLES = 0x1p-46;
+    return (is_exact(w) ? OF_DOUBLES : OF_FLOATS) * length;
+}
+
+void csg_taylor_walk_add_length(const csg_taylor_walk *w, double length, csg_taylor *f)
+{
+    f->error += csg_taylor_walk_length_off(w, length);
+    f->turned += csg_taylor_walk_length_off(w, 4);
 }
 
 csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double factor,

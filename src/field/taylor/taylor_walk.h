@@ -62,9 +62,9 @@ static inline double csg_taylor_walk_most(const csg_taylor_walk *w, const csg_ta
 bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t leaf, bool with_slopes,
                           csg_smooth_choice *choice, csg_smooth *out);
 
-/* How far the value of a leaf with these parameters is off: by them, and by the doubles that are
+/* How far the value of a leaf is off: by them, and by the doubles that are
  * computed with. */
-double csg_taylor_walk_rounding(const csg_taylor_walk *w, const float *parameters);
+double csg_taylor_walk_rounding(const csg_taylor_walk *w, uint32_t leaf);
 
 /* One of the options that are possible somewhere in the ball, by the script if there are several;
  * -1: there is none, or no more decisions may be left open. */
@@ -81,9 +81,10 @@ double csg_taylor_walk_apart(const csg_taylor_walk *w, const csg_taylor *d);
  */
 void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double apart);
 
-/* What a float makes of a blend's length: values move by no more than it does, gradients' shares by
- * as much of themselves. */
-void csg_taylor_walk_add_length(double length, csg_taylor *f);
+/* What a float makes of a blend's length, if the scene's is not known; values move by no more than
+ * it does, gradients' shares by as much of themselves. */
+double csg_taylor_walk_length_off(const csg_taylor_walk *w, double length);
+void csg_taylor_walk_add_length(const csg_taylor_walk *w, double length, csg_taylor *f);
 
 /* (a + b) / 2 + factor excess. */
 csg_taylor csg_taylor_walk_mean(const csg_taylor *a, const csg_taylor *b, double factor,

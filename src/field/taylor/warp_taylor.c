@@ -14,13 +14,13 @@
  * what doubles do. */
 static const double ROUNDING = 0x1p-23;
 
-void csg_taylor_place_points(const float frame[12], const double c[3], csg_smooth_leaf *l)
+void csg_taylor_place_points(const double frame[12], const double c[3], csg_smooth_leaf *l)
 {
     for (int i = 0; i < 3; i++) {
         csg_smooth *p = &l->p[i];
-        p->f = csg_taylor_constant((double)frame[9 + i]);
+        p->f = csg_taylor_constant(frame[9 + i]);
         for (int k = 0; k < 3; k++) {
-            p->f.slope[k] = (double)frame[3 * i + k];
+            p->f.slope[k] = frame[3 * i + k];
             p->f.value += p->f.slope[k] * c[k];
         }
         for (int k = 0; k < 3 && l->with_slopes; k++)
@@ -28,15 +28,15 @@ void csg_taylor_place_points(const float frame[12], const double c[3], csg_smoot
     }
 }
 
-void csg_taylor_placed(const float frame[12], csg_smooth_leaf *l)
+void csg_taylor_placed(const double frame[12], csg_smooth_leaf *l)
 {
     csg_smooth p[3];
     memcpy(p, l->p, sizeof p);
     for (int i = 0; i < 3; i++) {
-        csg_smooth sum = csg_smooth_scaled(l, (double)frame[3 * i], &p[0]);
+        csg_smooth sum = csg_smooth_scaled(l, frame[3 * i], &p[0]);
         for (int k = 1; k < 3; k++)
-            sum = csg_smooth_sum(l, &sum, (double)frame[3 * i + k], &p[k]);
-        l->p[i] = csg_smooth_line(l, (double)frame[9 + i], 1, &sum);
+            sum = csg_smooth_sum(l, &sum, frame[3 * i + k], &p[k]);
+        l->p[i] = csg_smooth_line(l, frame[9 + i], 1, &sum);
     }
 }
 
@@ -127,7 +127,10 @@ bool csg_taylor_warped(const csg_tape *tape, uint32_t warp, const double c[3], c
         way[count++] = &tape->warps[w - 1];
     while (count-- > 0) { /* the outermost first */
         double before = size_of(l), norm = csg_cone_norm(way[count]->frame);
-        csg_taylor_placed(way[count]->frame, l);
+        double frame[12];
+        for (int i = 0; i < 12; i++)
+            frame[i] = (double)way[count]->frame[i];
+        csg_taylor_placed(frame, l);
         *off = *off * norm + ROUNDING * (3 * norm * before + 2 * size_of(l));
         if (!pass(way[count], l))
             return false;

@@ -15,9 +15,9 @@ bool csg_taylor_warped(const csg_tape *tape, uint32_t warp, const double c[3], c
                        double *off);
 
 /* The same of the ball's own points, placed by the frame as below. */
-void csg_taylor_place_points(const float frame[12], const double c[3], csg_smooth_leaf *l);
+void csg_taylor_place_points(const double frame[12], const double c[3], csg_smooth_leaf *l);
 
 /* l->p by an affine map: rows of a matrix, then what is added. */
-void csg_taylor_placed(const float frame[12], csg_smooth_leaf *l);
+void csg_taylor_placed(const double frame[12], csg_smooth_leaf *l);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Where the fillets of a scene end, kept in it; see union_ends.h.
  */
+#include <math.h>
 #include <string.h>
 
 #include "scene/operators/union_ends.h"
@@ -12,31 +13,60 @@ typedef struct kept {
     size_t count, capacity, reach_count, reach_capacity;
 } kept;
 
+/* A half-space that holds all that the cylinder does, for each operand: n . p is no more than
+ * n . foot and the distance from the axis. */
+static bool is_behind(const csg_union_ends *found, size_t half_space, size_t cylinder,
+                      uint32_t operands)
+{
+    const csg_fillet_end *plane = &found->ends[half_space], *round = &found->ends[cylinder];
+    double at = csg_vec3_dot(plane->normal, round->foot);
+    if (plane->is_round || !round->is_round || fabs(csg_vec3_dot(plane->normal, round->normal)) > 0)
+        return false;
+    for (uint32_t k = 0; k < operands; k++)
+        if (!(found->reaches[k * found->count + half_space] >=
+              at + found->reaches[k * found->count + cylinder]))
+            return false;
+    return true;
+}
+
+/* What ends at a cylinder ends at no half-space around it. */
+static bool is_needed(const csg_union_ends *found, size_t i, uint32_t operands)
+{
+    for (size_t k = 0; k < found->count; k++)
+        if (is_behind(found, i, k, operands))
+            return false;
+    return true;
+}
+
 /* Behind those found before. */
 static bool keep(void *user, csg_node_id id, const csg_union_ends *found)
 {
     kept *k = user;
     const csg_node *node = &k->scene->nodes[id];
     csg_memory *memory = &k->scene->context->memory;
-    size_t reaches = found->count * node->child_count;
+    size_t most = found->count * node->child_count, needed = 0;
     void *ends = k->ends, *reached = k->reaches;
     if (!csg_memory_reserve(memory, &ends, &k->capacity, k->count + found->count, sizeof *k->ends))
         return false;
     k->ends = ends;
-    if (!csg_memory_reserve(memory, &reached, &k->reach_capacity, k->reach_count + reaches,
+    if (!csg_memory_reserve(memory, &reached, &k->reach_capacity, k->reach_count + most,
                             sizeof *k->reaches))
         return false;
     k->reaches = reached;
-    if (found->count) {
-        memcpy(k->ends + k->count, found->ends, found->count * sizeof *k->ends);
-        memcpy(k->reaches + k->reach_count, found->reaches, reaches * sizeof *k->reaches);
-    }
+    for (size_t i = 0; i < found->count; i++)
+        if (is_needed(found, i, node->child_count))
+            k->ends[k->count + needed++] = found->ends[i];
+    double *to = k->reaches + k->reach_count;
+    for (uint32_t n = 0; n < node->child_count; n++)
+        for (size_t i = 0; i < found->count; i++)
+            if (is_needed(found, i, node->child_count))
+                *to++ = found->reaches[n * found->count + i];
     double *v = k->scene->parameters + node->payload;
     v[CSG_FILLET_FIRST_NORMAL] = (double)k->count;
     v[CSG_FILLET_FIRST_REACH] = (double)k->reach_count;
-    v[CSG_FILLET_PLANES] = (double)found->count;
-    k->count += found->count;
-    k->reach_count += reaches;
+    v[CSG_FILLET_PLANES] = (double)needed;
+    k->count += needed;
+    k->reach_count += needed * node->child_count;
     return true;
 }
 

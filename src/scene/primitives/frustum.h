@@ -223,7 +223,7 @@ static inline bool csg_frustum_beside(const csg_smooth_leaf *l, const csg_smooth
 {
     const csg_smooth *const across[2] = {&l->p[0], &l->p[1]};
     const double round = (double)l->own[6];
-    bool is_upright = l->own[3] >= 1 && !(fabsf(l->own[4]) > 0);
+    bool is_upright = !(fabs(l->own[4]) > 0);
     if (is_upright)
         return csg_smooth_round(l, round + (double)l->own[0], across, 2, out);
     *out = csg_smooth_line(l, round, -1, side);
@@ -269,7 +269,7 @@ static inline bool csg_frustum_choose(const csg_smooth_leaf *l, const csg_smooth
  * but a cap needs no more than bounds of it. */
 static inline bool csg_frustum_smooth(const csg_smooth_leaf *l, csg_smooth *out)
 {
-    const float *own = l->own;
+    const double *own = l->own;
     const double h = (double)own[2], nx = (double)own[3], nz = (double)own[4];
     const double reach = l->reach * (1 + 1e-9);
     double end = l->p[2].f.value < 0 ? -1 : 1, rim = (double)own[1] + end * (double)own[7];

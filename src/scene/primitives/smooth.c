@@ -260,7 +260,7 @@ static bool find_of_box(const csg_smooth_leaf *l, const box_axis *of, int axes, 
                            : round_of_fan(l, near, near_count, value, out);
 }
 
-bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round, int axes,
+bool csg_smooth_of_box(const csg_smooth_leaf *l, const double *half, double round, int axes,
                        csg_smooth *out)
 {
     box_axis of[3];

@@ -37,10 +37,10 @@ typedef struct csg_smooth_choice {
 
 /* A leaf in its own frame. */
 typedef struct csg_smooth_leaf {
-    const float *own; /* parameters as packed */
-    csg_smooth p[3];  /* own coordinates */
-    double radius;    /* of the ball */
-    double reach;     /* own coordinates in the ball are no farther from those at its centre */
+    const double *own; /* parameters as packed */
+    csg_smooth p[3];   /* own coordinates */
+    double radius;     /* of the ball */
+    double reach;      /* own coordinates in the ball are no farther from those at its centre */
     bool with_slopes;
     csg_smooth_choice *choice; /* NULL: one formula has to hold all over the ball */
 } csg_smooth_leaf;
@@ -108,7 +108,7 @@ static inline bool csg_smooth_is_above(const csg_smooth_leaf *l, const csg_smoot
 }
 
 /* round less the distance from a box over the first `axes` axes with these half sizes. */
-bool csg_smooth_of_box(const csg_smooth_leaf *l, const float *half, double round, int axes,
+bool csg_smooth_of_box(const csg_smooth_leaf *l, const double *half, double round, int axes,
                        csg_smooth *out);
 
 /* The distance from the z axis. */
