@@ -60,6 +60,18 @@ static void test_blunt_edges(void **state)
     end(&c);
 }
 
+/* The same, but two and a half times as long as they are apart. */
+static void test_long_blunt_edges(void **state)
+{
+    solid_case c;
+    solid_begin(&c);
+    solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 12, 0);
+    begin(&c);
+    assert_true(may_crease(&c, csg_vec3_make(0.6, 0.79, 0.13), 0.08, 0.15));
+    assert_false(may_crease(&c, csg_vec3_make(0.6, 0.79, 0.13), 0.08, 0.2));
+    end(&c);
+}
+
 /* A roof of 8 degrees, in strips 0.1 wide: nothing turns beside its ridge. */
 static void test_ridge(void **state)
 {
@@ -144,8 +156,11 @@ static void test_together(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box),      cmocka_unit_test(test_blunt_edges),
-        cmocka_unit_test(test_ridge),    cmocka_unit_test(test_gradients_where_nothing_creases),
+        cmocka_unit_test(test_box),
+        cmocka_unit_test(test_blunt_edges),
+        cmocka_unit_test(test_long_blunt_edges),
+        cmocka_unit_test(test_ridge),
+        cmocka_unit_test(test_gradients_where_nothing_creases),
         cmocka_unit_test(test_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

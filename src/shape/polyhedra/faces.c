@@ -137,17 +137,22 @@ static bool turns_again(const bending *b, const blunt_edge *of, uint32_t place, 
     return false;
 }
 
+/* Blunt edges that are left out are short: a long one is a straight crease through many cells,
+ * however near the next one runs. */
 static bool is_crease(const bending *b, uint32_t place, int edge)
 {
     enum { STEPS = 4 };
+    static const double LONG = 1.5; /* narrows */
     const csg_tree_triangle *t = &b->solid->tree.triangles[place];
+    uint32_t other = b->solid->beside[place][edge];
     blunt_edge of = {.turn = (double)b->solid->turn[place][edge]};
     if (!(of.turn > b->crease->least) || !(of.turn < b->crease->blunt))
         return of.turn > b->crease->least;
-    uint32_t other = b->solid->beside[place][edge];
     of.from = corner_of(t, edge);
-    of.way = csg_vec3_normalize(csg_vec3_sub(corner_of(t, (edge + 1) % 3), of.from));
-    return !turns_again(b, &of, place, edge, STEPS) ||
+    of.way = csg_vec3_sub(corner_of(t, (edge + 1) % 3), of.from);
+    double length = csg_vec3_norm(of.way);
+    of.way = csg_vec3_scale(of.way, 1 / length);
+    return length > LONG * b->narrow || !turns_again(b, &of, place, edge, STEPS) ||
            !turns_again(b, &of, other, edge_towards(b->solid, other, place), STEPS);
 }
 
