@@ -184,11 +184,8 @@ static void halves_hold(void **state)
         csg_random random = {.state = 7000 + test_first_seed + i};
         mesh_case m;
         mesh_case_begin(&m, 1);
-        test_random_shapes = i % 3 == 1;
-        test_random_rules = i % 6 == 2;
-        test_random_fillets = has_fillets = i % 6 == 5;
-        test_random_curves = i % 12 == 3;
-        csg_node_id root = test_random_scene(&m.builder, &random, 1 + (unsigned)(i % 5));
+        csg_node_id root = test_random_mixed(&m.builder, &random, i);
+        has_fillets = test_random_fillets;
         assert_true(root != CSG_NODE_NONE);
         mesh_case_compile(&m, root);
         if (!test_has_debulge(m.scene))

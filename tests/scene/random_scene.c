@@ -275,3 +275,12 @@ csg_node_id test_random_scene(csg_scene_builder *builder, csg_random *random, un
     }
     return pool[0];
 }
+
+csg_node_id test_random_mixed(csg_scene_builder *builder, csg_random *random, uint64_t i)
+{
+    test_random_shapes = i % 3 == 1;
+    test_random_rules = i % 6 == 2;
+    test_random_fillets = i % 6 == 5;
+    test_random_curves = i % 12 == 3;
+    return test_random_scene(builder, random, 1 + (unsigned)(i % 5));
+}

@@ -32,6 +32,9 @@ extern bool test_random_curves;
  */
 extern bool test_random_fillets;
 
+/* The i-th of scenes that take turns with these, 1 to 5 primitives each; it leaves them set. */
+csg_node_id test_random_mixed(csg_scene_builder *builder, csg_random *random, uint64_t i);
+
 /* One such solid, finite, not placed. */
 csg_node_id test_random_shaped(csg_scene_builder *builder, csg_random *random);
 

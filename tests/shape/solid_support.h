@@ -22,6 +22,20 @@ static inline void solid_begin(solid_case *c)
     c->shape = NULL;
 }
 
+/* The shape of what was added. */
+static inline void solid_make(solid_case *c)
+{
+    assert_int_equal(csg_polyhedron_create(&c->memory, &c->triangles, &c->repairs, &c->shape),
+                     CSGM_OK);
+}
+
+static inline void solid_end(solid_case *c)
+{
+    csg_shape_release(c->shape);
+    csg_triangles_release(&c->triangles);
+    assert_int_equal(c->memory.used_bytes, 0);
+}
+
 /* All of these add to what is there. */
 void solid_add_box(csg_triangles *t, csg_vec3 low, csg_vec3 high, bool inwards);
 /* Each face cut into n x n squares. */

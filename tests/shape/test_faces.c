@@ -9,19 +9,6 @@
 /* As the search for features asks: 3 degrees, 12, and 23. */
 static const double LEAST = 1.37e-3, BLUNT = 0.0219, MOST_TURN = 0.08;
 
-static void begin(solid_case *c)
-{
-    assert_int_equal(csg_polyhedron_create(&c->memory, &c->triangles, &c->repairs, &c->shape),
-                     CSGM_OK);
-}
-
-static void end(solid_case *c)
-{
-    csg_shape_release(c->shape);
-    csg_triangles_release(&c->triangles);
-    assert_int_equal(c->memory.used_bytes, 0);
-}
-
 static bool may_crease(const solid_case *c, csg_vec3 at, double radius, double narrow)
 {
     const csg_shape_crease crease = {LEAST, BLUNT, narrow, MOST_TURN};
@@ -35,14 +22,14 @@ static void test_box(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 8);
-    begin(&c);
+    solid_make(&c);
     for (int narrow = 0; narrow < 2; narrow++) {
         assert_false(may_crease(&c, csg_vec3_make(0.1, 0.2, 1), 0.5, narrow));
         assert_false(may_crease(&c, csg_vec3_make(0.1, 0.6, 1.05), 0.39, narrow));
         assert_true(may_crease(&c, csg_vec3_make(0.1, 0.62, 1), 0.39, narrow));
         assert_true(may_crease(&c, csg_vec3_make(1.1, 1.1, 0.3), 0.2, narrow));
     }
-    end(&c);
+    solid_end(&c);
 }
 
 /* 6 degrees from facet to facet, which are 0.1 wide. */
@@ -51,13 +38,13 @@ static void test_blunt_edges(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 31, 0);
-    begin(&c);
+    solid_make(&c);
     const csg_vec3 at = csg_vec3_make(0.6, 0.8, 0.03);
     assert_true(may_crease(&c, at, 0.12, 0));
     assert_true(may_crease(&c, at, 0.12, 0.08));
     assert_false(may_crease(&c, at, 0.12, 0.15));
     assert_true(may_crease(&c, at, 0.4, 0.15)); /* it turns too far */
-    end(&c);
+    solid_end(&c);
 }
 
 /* The same, but two and a half times as long as they are apart. */
@@ -66,10 +53,10 @@ static void test_long_blunt_edges(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 12, 0);
-    begin(&c);
+    solid_make(&c);
     assert_true(may_crease(&c, csg_vec3_make(0.6, 0.79, 0.13), 0.08, 0.15));
     assert_false(may_crease(&c, csg_vec3_make(0.6, 0.79, 0.13), 0.08, 0.2));
-    end(&c);
+    solid_end(&c);
 }
 
 /* A roof of 8 degrees, in strips 0.1 wide: nothing turns beside its ridge. */
@@ -83,10 +70,10 @@ static void test_ridge(void **state)
     for (size_t i = 0; i < t->point_count; i++)
         if (t->points[i].z > -0.01)
             t->points[i].z = 0.07 * (1 - fabs(t->points[i].x));
-    begin(&c);
+    solid_make(&c);
     assert_true(may_crease(&c, csg_vec3_make(0, 0.03, 0.07), 0.12, 0.15));
     assert_false(may_crease(&c, csg_vec3_make(0.5, 0.03, 0.035), 0.12, 0.15));
-    end(&c);
+    solid_end(&c);
 }
 
 /* A place in the ball from which the nearest place of the surface is in it too. */
@@ -106,7 +93,7 @@ static void test_gradients_where_nothing_creases(void **state)
     int smooth = 0, asked = 0;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 90, 46, 0.05);
-    begin(&c);
+    solid_make(&c);
     for (int i = 0; i < 400; i++) {
         csg_vec3 at = csg_vec3_normalize(solid_random_point(&random, 1)), g[20];
         int count = 0;
@@ -120,7 +107,7 @@ static void test_gradients_where_nothing_creases(void **state)
     }
     assert_true(smooth > 20 && smooth < 380);
     assert_true(asked > 100);
-    end(&c);
+    solid_end(&c);
 }
 
 /* Balls are told apart alike, one by one or together. */
@@ -133,7 +120,7 @@ static void test_together(void **state)
     int creased = 0;
     solid_begin(&c);
     solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 32);
-    begin(&c);
+    solid_make(&c);
     for (size_t i = 0; i < balls.count; i++) {
         csg_vec3 p = solid_random_point(&random, 1);
         balls.center[i] = csg_vec3_make(1, p.y, p.z);
@@ -150,7 +137,7 @@ static void test_together(void **state)
     csg_shape_creases(c.shape, &crease, &balls);
     for (size_t i = 0; i < balls.count; i++)
         assert_true(balls.may_crease[i]);
-    end(&c);
+    solid_end(&c);
 }
 
 int main(void)

@@ -10,19 +10,6 @@
 #include "rounds.h"
 #include "shape/shape_kernel.h"
 
-static void make(solid_case *c)
-{
-    assert_int_equal(csg_polyhedron_create(&c->memory, &c->triangles, &c->repairs, &c->shape),
-                     CSGM_OK);
-}
-
-static void end(solid_case *c)
-{
-    csg_shape_release(c->shape);
-    csg_triangles_release(&c->triangles);
-    assert_int_equal(c->memory.used_bytes, 0);
-}
-
 static double value(const solid_case *c, csg_vec3 p)
 {
     csg_vec3 gradient;
@@ -57,13 +44,13 @@ static void test_box(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), false);
-    make(&c);
+    solid_make(&c);
     csg_repairs nothing = {0};
     assert_memory_equal(&c.repairs, &nothing, sizeof nothing);
     assert_true(csg_polyhedron_is_convex(c.shape));
     for (int i = 0; i < 20000; i++)
         check_box(&c, solid_random_point(&random, 2), 1);
-    end(&c);
+    solid_end(&c);
 }
 
 /* Around corners, edges and diagonals of every face, as near as 1e-9; and exactly in their planes.
@@ -75,7 +62,7 @@ static void test_near_edges(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 4);
-    make(&c);
+    solid_make(&c);
     assert_int_equal(c.repairs.welded, 6 * 25 - 98);
     assert_true(csg_polyhedron_is_convex(c.shape));
     for (int i = 0; i < 20000; i++) {
@@ -84,7 +71,7 @@ static void test_near_edges(void **state)
             at[k] = csg_random_below(&random, 9) * 0.25 - 1 + steps[csg_random_below(&random, 7)];
         check_box(&c, csg_vec3_make(at[0], at[1], at[2]), 1);
     }
-    end(&c);
+    solid_end(&c);
 }
 
 static void test_ball(void **state)
@@ -93,7 +80,7 @@ static void test_ball(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(5, 6, 7), 2, 96, 48, 0);
-    make(&c);
+    solid_make(&c);
     double sagitta = 2 * (1 - cos(M_PI / 48) * cos(M_PI / 96));
     for (int i = 0; i < 5000; i++) {
         csg_vec3 p = solid_random_point(&random, 3);
@@ -102,7 +89,7 @@ static void test_ball(void **state)
         assert_true(f >= 2 - csg_vec3_norm(p) - sagitta);
     }
     assert_true(csg_polyhedron_is_convex(c.shape));
-    end(&c);
+    solid_end(&c);
 }
 
 /* ---- against all triangles --------------------------------------------------------------------
@@ -110,7 +97,7 @@ static void test_ball(void **state)
 
 static void check_against_all(solid_case *c, csg_random *random, double half, int count)
 {
-    make(c);
+    solid_make(c);
     const csg_triangles *mended = csg_polyhedron_triangles(c->shape);
     for (int i = 0; i < count; i++) {
         csg_vec3 p = solid_random_point(random, half);
@@ -161,7 +148,7 @@ static void test_solids_of_all_kinds(void **state)
         check_against_all(&c, &random, 1.5, 1500);
         if (kind == 1 || kind == 2)
             assert_true(c.repairs.overlapping);
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -173,7 +160,7 @@ static void test_needles(void **state)
     solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(0, 0, 0), csg_vec3_make(1, 1e-9, 1e-9), false);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, 0.5), csg_vec3_make(1, 1, 0.5 + 1e-8), false);
-    make(&c);
+    solid_make(&c);
     for (int i = 0; i < 2000; i++) {
         csg_vec3 p = solid_random_point(&random, 1);
         csg_vec3 a = {fmax(fmin(p.x, 1), 0), 0, 0}, b = {p.x, p.y, 0.5};
@@ -181,7 +168,7 @@ static void test_needles(void **state)
                to_sheet = csg_vec3_norm(csg_vec3_sub(p, b));
         assert_true(fabs(fabs(value(&c, p)) - fmin(to_rod, to_sheet)) < 1e-7);
     }
-    end(&c);
+    solid_end(&c);
 }
 
 /* ---- batches ----------------------------------------------------------------------------------
@@ -211,7 +198,7 @@ static void test_batches(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 1.2);
-    make(&c);
+    solid_make(&c);
     fill_points(&random, x, y, z);
     csg_shape_values(c.shape, NULL, NULL, x, y, z, POINTS, all);
     csg_shape_gradients(c.shape, NULL, NULL, x, y, z, POINTS, f, g[0], g[1], g[2]);
@@ -229,7 +216,7 @@ static void test_batches(void **state)
         assert_true((float)csg_shape_sample(c.shape, p, &gradient) == one);
         assert_true((float)gradient.x == g[0][i] && (float)gradient.y == g[1][i]);
     }
-    end(&c);
+    solid_end(&c);
 }
 
 /* Points that lie together are searched together: by lanes as one by one, to the bit. */
@@ -270,10 +257,10 @@ static void test_packets(void **state)
                           false);
         if (i % 4 == 2) /* ties, and shells that cross */
             solid_add_fine_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), 7);
-        make(&c);
+        solid_make(&c);
         for (int k = 0; k < ROUNDS(60); k++)
             check_packet(&c, &random);
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -361,10 +348,10 @@ static void test_cells(void **state)
         if (i % 2) /* shells that cross */
             solid_add_fine_box(&c.triangles, csg_vec3_make(-0.9, -0.4, -0.3),
                                csg_vec3_make(0.3, 0.5, 0.45), 1 + i / 4);
-        make(&c);
+        solid_make(&c);
         for (int k = 0; k < ROUNDS(25); k++)
             check_cells(&c, &random);
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -384,10 +371,10 @@ static void test_cells_of_long_triangles(void **state)
             p->x = wave * cos(angle + 2 * p->z);
             p->y = wave * sin(angle + 2 * p->z);
         }
-        make(&c);
+        solid_make(&c);
         for (int k = 0; k < ROUNDS(400); k++)
             check_cells(&c, &random);
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -397,7 +384,7 @@ static void test_gradients(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 60, 30, 0.2);
-    make(&c);
+    solid_make(&c);
     int unlike = 0;
     for (int i = 0; i < 2000; i++) {
         csg_vec3 p = solid_random_point(&random, 1.3), g;
@@ -407,7 +394,7 @@ static void test_gradients(void **state)
         unlike += fabs(up - f - 1e-6) > 1e-9;
     }
     assert_true(unlike < 20); /* next to the medial axis */
-    end(&c);
+    solid_end(&c);
 }
 
 static void test_far_and_not_numbers(void **state)
@@ -416,7 +403,7 @@ static void test_far_and_not_numbers(void **state)
     solid_case c;
     solid_begin(&c);
     solid_add_box(&c.triangles, csg_vec3_make(-1, -1, -1), csg_vec3_make(1, 1, 1), false);
-    make(&c);
+    solid_make(&c);
     for (size_t i = 0; i < sizeof far / sizeof *far; i++) {
         csg_vec3 p = {far[i], -far[i] / 2, far[i] / 3};
         assert_true(fabs(value(&c, p) / box_value(p, 1) - 1) < 1e-12);
@@ -428,7 +415,7 @@ static void test_far_and_not_numbers(void **state)
         assert_true(f[i] < 0);
     for (int i = 0; i < 12; i++)
         assert_true(fabsf(g[i]) <= 1.0001f);
-    end(&c);
+    solid_end(&c);
 }
 
 /* The same solid a hundred powers of two up and down, and far from zero. */
@@ -442,7 +429,7 @@ static void test_scales(void **state)
         double s = scales[i], shift = i == 2 ? 1e6 : 0;
         solid_add_box(&c.triangles, csg_vec3_make(shift - s, -s, -s),
                       csg_vec3_make(shift + s, s, s), false);
-        make(&c);
+        solid_make(&c);
         assert_true(fabs(c.shape->box.min.x - (shift - s)) <= 1e-11 * s);
         assert_true(fabs(c.shape->box.max.y - s) <= 1e-11 * s);
         for (int k = 0; k < 1000; k++) {
@@ -450,7 +437,7 @@ static void test_scales(void **state)
             at.x += shift;
             assert_true(fabs(value(&c, at) / s - box_value(p, 1)) < 1e-9);
         }
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -468,9 +455,9 @@ static void test_convex(void **state)
         if (kind == 3)
             solid_add_box(&c.triangles, csg_vec3_make(-0.1, -0.1, -0.1),
                           csg_vec3_make(0.1, 0.1, 0.1), true);
-        make(&c);
+        solid_make(&c);
         assert_int_equal(csg_polyhedron_is_convex(c.shape), kind == 0);
-        end(&c);
+        solid_end(&c);
     }
 }
 
@@ -481,9 +468,9 @@ static void test_hash(void **state)
         solid_case c;
         solid_begin(&c);
         solid_add_ball(&c.triangles, csg_vec3_make(0, 0, 0), 1, 20, 10, i == 2 ? 0.01 : 0);
-        make(&c);
+        solid_make(&c);
         hashes[i] = csg_shape_hash(c.shape);
-        end(&c);
+        solid_end(&c);
     }
     assert_true(hashes[0] == hashes[1] && hashes[0] != hashes[2]);
 }
@@ -513,7 +500,7 @@ static void test_every_allocation_fails(void **state)
         assert_int_equal(f.allocator.live, 0);
     }
     assert_true(n > 8);
-    end(&c);
+    solid_end(&c);
 }
 
 int main(void)

@@ -332,11 +332,8 @@ static void random_scenes(void **state)
         char what[40];
         mesh_case c;
         mesh_case_begin(&c, 2);
-        test_random_shapes = i % 3 == 1;
-        test_random_rules = i % 6 == 2;
-        test_random_fillets = has_jumps = i % 6 == 5;
-        test_random_curves = i % 12 == 3;
-        csg_node_id root = test_random_scene(&c.builder, &random, 1 + (unsigned)(i % 5));
+        csg_node_id root = test_random_mixed(&c.builder, &random, i);
+        has_jumps = test_random_fillets;
         assert_true(root != CSG_NODE_NONE);
         mesh_case_compile(&c, root);
         csg_box b = c.field->bounds;

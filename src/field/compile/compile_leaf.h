@@ -19,8 +19,8 @@ void csg_leaf_place(csg_leaf *leaf, const csg_affine *place);
 void csg_leaf_primitive(csg_leaf *leaf, const csg_affine *place, double factor, bool negate,
                         csg_primitive_kind kind, const double *parameters);
 /* The leaf's parameters as tape.h lays them out; returns how many. */
+size_t csg_leaf_pack(const csg_leaf *leaf, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS]);
 /* The same as doubles, as csg_tape_exact has them. */
 size_t csg_leaf_numbers(const csg_leaf *leaf, double values[CSG_LEAF_MOST_PARAMETERS]);
-size_t csg_leaf_pack(const csg_leaf *leaf, uint32_t color, float values[CSG_LEAF_MOST_PARAMETERS]);
 
 #endif
