@@ -215,12 +215,17 @@ static inline bool csg_fillet_rows_apart(const float *parameters, uint32_t one, 
     return false;
 }
 
-/* Parameter number `at` as the scene says it, as far as that is known: of
- * leaves, and the length of a blend. */
+/* Whether it is known what the scene says. */
+static inline bool csg_tape_is_exact(const csg_tape *tape)
+{
+    return tape->exact && tape->exact->parameters;
+}
+
+/* Parameter number `at` as the scene says it, as far as that is known: of leaves, and the length of
+ * a blend. */
 static inline double csg_tape_number(const csg_tape *tape, uint32_t at)
 {
-    bool is_known = tape->exact && tape->exact->parameters;
-    return is_known ? tape->exact->parameters[at] : (double)tape->parameters[at];
+    return csg_tape_is_exact(tape) ? tape->exact->parameters[at] : (double)tape->parameters[at];
 }
 
 /* A leaf's own parameters. */

@@ -434,8 +434,8 @@ static csgm_status go_on(rounds *r, uint64_t most_cubes)
     static const double BETTER = 1.05; /* than the best round so far */
     enum {
         VAIN = 2, /* rounds that are not: rounding is what is left */
-        IDLE = 32
-    }; /* and that look at no cube, as all are full or as small */
+        IDLE = 32 /* rounds that look at no cube, as all are full or as small as can be */
+    };
     csgm_status status = CSGM_OK;
     csg_rounds_counts counts = {0};
     course so_far = {.falls = 0.5, .left = 0.05};

@@ -90,8 +90,6 @@ bool csg_shape_normals(const csg_shape *shape, csg_vec3 c, double radius,
 void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
                        csg_shape_balls *balls)
 {
-    for (size_t i = 0; i < balls->count; i++)
-        balls->may_crease[i] = !shape->operations->creases;
-    if (shape->operations->creases)
-        shape->operations->creases(shape, crease, balls);
+    memset(balls->may_crease, false, sizeof balls->may_crease);
+    shape->operations->creases(shape, crease, balls);
 }

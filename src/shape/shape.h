@@ -68,7 +68,8 @@ typedef struct csg_shape_operations {
     uint64_t (*hash)(const csg_shape *shape);
     bool (*normals)(const csg_shape *shape, csg_vec3 c, double radius, csg_shape_take_normal *take,
                     void *user);
-    void (*creases)(const csg_shape *shape, const csg_shape_crease *crease, csg_shape_balls *balls);
+    void (*creases)(const csg_shape *shape, const csg_shape_crease *crease,
+                    csg_shape_balls *balls); /* NULL: it does not tell */
 } csg_shape_operations;
 
 /* The first member of the struct of each kind. */
@@ -113,6 +114,12 @@ uint32_t csg_shape_narrow(const csg_shape *shape, const csg_shape_near *among,
  * that cross others, lie within the solid, or are needles). */
 bool csg_shape_normals(const csg_shape *shape, csg_vec3 c, double radius,
                        csg_shape_take_normal *take, void *user);
+
+/* Whether csg_shape_creases may be asked. */
+static inline bool csg_shape_tells_creases(const csg_shape *shape)
+{
+    return shape->operations->creases != NULL;
+}
 
 /* For each ball whether the surface has creases there, or may have some. Where it has none, the
  * gradients at points whose nearest places are in the ball differ by no more than `most_turn`, and

@@ -9,11 +9,6 @@
 #include "scene/primitives/curve.h"
 #include "scene/primitives/kinds.h"
 
-static bool is_exact(const csg_taylor_walk *w)
-{
-    return w->tape->exact && w->tape->exact->parameters;
-}
-
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -44,8 +39,8 @@ static bool place(const csg_taylor_walk *w, const csg_tape_node *leaf, bool with
 
 double csg_taylor_walk_rounding(const csg_taylor_walk *w, uint32_t leaf)
 {
-    uint32_t at = w->tape->nodes[leaf].parameters;
     static const double OF_DOUBLES = 0x1p-26 /* of the slack */, OF_PLACE = 0x1p-44;
+    uint32_t at = w->tape->nodes[leaf].parameters;
     double far = fabs(w->c[0]) + fabs(w->c[1]) + fabs(w->c[2]) + w->radius;
     return csg_tape_number(w->tape, at + CSG_LEAF_OFF) +
            csg_tape_number(w->tape, at + CSG_LEAF_TURNED) * far +
@@ -60,7 +55,7 @@ bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t index, bool with_sl
     const csg_tape_node *leaf = &tape->nodes[index];
     double raise = csg_tape_number(tape, leaf->parameters + CSG_LEAF_RAISE),
            sigma = csg_tape_number(tape, leaf->parameters + CSG_LEAF_SIGMA);
-    double directions = is_exact(w) ? OF_DOUBLES : OF_FLOATS;
+    double directions = csg_tape_is_exact(w->tape) ? OF_DOUBLES : OF_FLOATS;
     double turned = csg_tape_number(tape, leaf->parameters + CSG_LEAF_TURNED);
     double numbers[CSG_LEAF_MOST_OWN];
     csg_smooth_leaf l;
@@ -118,7 +113,7 @@ void csg_taylor_walk_add_apart(const csg_taylor_walk *w, csg_taylor *f, double a
 double csg_taylor_walk_length_off(const csg_taylor_walk *w, double length)
 {
     static const double OF_FLOATS = 0x1p-24, OF_DOUBLES = 0x1p-46;
-    return (is_exact(w) ? OF_DOUBLES : OF_FLOATS) * length;
+    return (csg_tape_is_exact(w->tape) ? OF_DOUBLES : OF_FLOATS) * length;
 }
 
 void csg_taylor_walk_add_length(const csg_taylor_walk *w, double length, csg_taylor *f)

@@ -62,8 +62,8 @@ static inline double csg_taylor_walk_most(const csg_taylor_walk *w, const csg_ta
 bool csg_taylor_walk_leaf(const csg_taylor_walk *w, uint32_t leaf, bool with_slopes,
                           csg_smooth_choice *choice, csg_smooth *out);
 
-/* How far the value of a leaf is off: by them, and by the doubles that are
- * computed with. */
+/* How far the value of a leaf is off: by its parameters, and by the doubles that are computed with.
+ */
 double csg_taylor_walk_rounding(const csg_taylor_walk *w, uint32_t leaf);
 
 /* One of the options that are possible somewhere in the ball, by the script if there are several;

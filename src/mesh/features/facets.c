@@ -27,7 +27,17 @@ static bool keeps_angles(const csg_tape_node *leaf, const float *frame)
     return keeps;
 }
 
-/* Balls around points of the tape's frame, held against the shape; radii are filled in. */
+/* Whether the leaf's shape tells its creases, and they are the leaf's. */
+static bool tells_creases(const csg_tape *tape, const csg_tape_node *leaf)
+{
+    const float *parameters = tape->parameters + leaf->parameters;
+    return !leaf->warp && parameters[CSG_LEAF_RAISE] == 0 &&
+           csg_shape_tells_creases(csg_tape_shape(tape, leaf)) &&
+           keeps_angles(leaf, parameters + CSG_LEAF_FRAME);
+}
+
+/* Balls around points of the tape's frame, held against the shape of a leaf that tells; radii are
+ * filled in. */
 static void find_creases(const csg_tape *tape, const csg_tape_node *leaf, float cell,
                          const float *x, const float *y, const float *z, csg_shape_balls *balls)
 {
@@ -38,10 +48,6 @@ static void find_creases(const csg_tape *tape, const csg_tape_node *leaf, float 
                                      .blunt = (double)CSG_FEATURE_FADING,
                                      .narrow = NARROW * (double)cell * scale,
                                      .most_turn = CSG_FEATURE_MOST_BEND};
-    if (leaf->warp || parameters[CSG_LEAF_RAISE] != 0 || !keeps_angles(leaf, frame)) {
-        memset(balls->may_crease, true, sizeof balls->may_crease);
-        return;
-    }
     for (size_t i = 0; i < balls->count; i++) {
         const float at[3] = {x[i], y[i], z[i]};
         float q[3];
@@ -61,6 +67,10 @@ void csg_feature_find_facets(const csg_tape *tape, const csg_tape_node *leaf, fl
                              csg_shape_balls *balls)
 {
     static const double HALF_CUBE = 0.8661, HALF_FACE = 0.7072; /* diagonals, rounded up */
+    if (!tells_creases(tape, leaf)) {
+        memset(balls->may_crease, true, sizeof balls->may_crease);
+        return;
+    }
     balls->count = balls->fewest = count;
     for (size_t i = 0; i < count; i++)
         balls->radius[i] = 1.01 * (HALF_CUBE + FARTHER * HALF_FACE + AROUND) * (double)cell;
@@ -190,7 +200,8 @@ void csg_feature_drop_facets(csg_feature_room *room, csg_feature_probe *probe)
         if (part && part->state != CSG_CELL_SURFACE)
             continue;
         for (uint32_t i = 0; i < count; i++)
-            if (nodes[i].op == CSG_OP_SHAPE)
+            if (nodes[i].op == CSG_OP_SHAPE &&
+                tells_creases(&probe->marching->field->tape, &nodes[i]))
                 drop_at_leaf(&j, &nodes[i], count == 1);
     }
 }

@@ -44,7 +44,7 @@ static bool keep(void *user, csg_node_id id, const csg_union_ends *found)
     kept *k = user;
     const csg_node *node = &k->scene->nodes[id];
     csg_memory *memory = &k->scene->context->memory;
-    size_t most = found->count * node->child_count, needed = 0;
+    size_t most = found->count * node->child_count, needed = 0, at = 0;
     void *ends = k->ends, *reached = k->reaches;
     if (!csg_memory_reserve(memory, &ends, &k->capacity, k->count + found->count, sizeof *k->ends))
         return false;
@@ -54,13 +54,15 @@ static bool keep(void *user, csg_node_id id, const csg_union_ends *found)
         return false;
     k->reaches = reached;
     for (size_t i = 0; i < found->count; i++)
-        if (is_needed(found, i, node->child_count))
-            k->ends[k->count + needed++] = found->ends[i];
-    double *to = k->reaches + k->reach_count;
-    for (uint32_t n = 0; n < node->child_count; n++)
-        for (size_t i = 0; i < found->count; i++)
-            if (is_needed(found, i, node->child_count))
-                *to++ = found->reaches[n * found->count + i];
+        needed += is_needed(found, i, node->child_count);
+    for (size_t i = 0; i < found->count; i++) {
+        if (!is_needed(found, i, node->child_count))
+            continue;
+        k->ends[k->count + at] = found->ends[i];
+        for (uint32_t n = 0; n < node->child_count; n++)
+            k->reaches[k->reach_count + n * needed + at] = found->reaches[n * found->count + i];
+        at++;
+    }
     double *v = k->scene->parameters + node->payload;
     v[CSG_FILLET_FIRST_NORMAL] = (double)k->count;
     v[CSG_FILLET_FIRST_REACH] = (double)k->reach_count;

@@ -18,11 +18,6 @@ bool csg_polyhedron_find_plain(const csg_polyhedron *solid, uint32_t place)
     return plain >> (place - first) & 1;
 }
 
-static csg_vec3 inward_of(const csg_tree_triangle *t)
-{
-    return csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
-}
-
 /* ---- normals ----------------------------------------------------------------------------------
  */
 
@@ -37,7 +32,8 @@ static bool take_triangle(void *user, uint32_t place)
 {
     enum { MOST = 256 };
     taking *t = user;
-    return ++t->count <= MOST && t->take(t->user, inward_of(&t->solid->tree.triangles[place])) &&
+    return ++t->count <= MOST &&
+           t->take(t->user, csg_polyhedron_inward(&t->solid->tree.triangles[place])) &&
            csg_polyhedron_is_plain_beyond(t->solid, place, INFINITY);
 }
 
@@ -82,8 +78,8 @@ float csg_polyhedron_find_turn(const csg_polyhedron *solid, uint32_t place, int 
     uint32_t other = solid->beside[place][edge];
     if (other == CSG_TREE_NONE)
         return 2;
-    return (float)(1 - csg_vec3_dot(inward_of(&solid->tree.triangles[place]),
-                                    inward_of(&solid->tree.triangles[other])));
+    return (float)(1 - csg_vec3_dot(csg_polyhedron_inward(&solid->tree.triangles[place]),
+                                    csg_polyhedron_inward(&solid->tree.triangles[other])));
 }
 
 /* The edge of a triangle that another one is at. */
@@ -210,7 +206,7 @@ static void add_face(bending *b, uint32_t place, uint64_t near)
 {
     const csg_tree_triangle *t = &b->solid->tree.triangles[place];
     bool is_plain = csg_polyhedron_is_plain_beyond(b->solid, place, INFINITY);
-    csg_vec3 inward = inward_of(t);
+    csg_vec3 inward = csg_polyhedron_inward(t);
     for (; near; near &= near - 1) {
         int i = __builtin_ctzll(near);
         csg_box *normals = &b->normals[i];

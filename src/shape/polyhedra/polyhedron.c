@@ -201,7 +201,7 @@ static csg_vec3 gradient_of(const csg_polyhedron *solid, found *f)
     const csg_tree_triangle *t = &solid->tree.triangles[f->nearest.place];
     locate(solid, f);
     csg_vec3 away = csg_vec3_sub(f->at, f->foot);
-    csg_vec3 inward = csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
+    csg_vec3 inward = csg_polyhedron_inward(t);
     if (f->nearest.squared < CSG_POLYHEDRON_LEAST * CSG_POLYHEDRON_LEAST)
         return inward;
     double sign = f->inside ? 1 : -1;

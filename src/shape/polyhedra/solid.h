@@ -41,6 +41,12 @@ static inline bool csg_polyhedron_is_far(csg_vec3 p)
     return !(fabs(p.x) < 0x1p60 && fabs(p.y) < 0x1p60 && fabs(p.z) < 0x1p60);
 }
 
+/* A triangle's unit normal, into the solid. */
+static inline csg_vec3 csg_polyhedron_inward(const csg_tree_triangle *t)
+{
+    return csg_vec3_normalize(csg_vec3_cross(t->ac, t->ab));
+}
+
 /* faces.c. What `turn` is of an edge, once `beside` is known; whether a triangle, by its place in
  * the tree, is plain, found once; and whether it is as good as plain for a point with no triangle
  * within `free`. */
