@@ -14,7 +14,7 @@
 #include "scene/star.h"
 #include "shape/polyhedra/polyhedron.h"
 
-static uint32_t scene_count = ROUNDS(24), range_count = 0, step_count = 0;
+static uint32_t scene_count = ROUNDS(24), range_count = 0, step_count = 0, smooth_count = 0;
 
 enum { TRIES = 60 };
 
@@ -110,6 +110,25 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     }
 }
 
+/* How fast they turn, between two places of the region, near to each other and far. Returns whether
+ * it was known that they do not jump. */
+static bool check_bend(const csgm_scene *scene, csg_random *random, csg_vec3 at,
+                       const csg_gradients_region *region, const csg_gradients *found)
+{
+    for (int i = 0; i < TRIES && found->jump < INFINITY; i++) {
+        csg_vec3 p = csg_vec3_add(at, place_in(region, random, 1));
+        csg_vec3 off = csg_vec3_sub(csg_vec3_add(at, place_in(region, random, 1)), p);
+        off = csg_vec3_scale(off, exp(csg_random_uniform(random, -3, 0)));
+        csg_vec3 g = test_sample(scene, p).gradient;
+        csg_vec3 other = test_sample(scene, csg_vec3_add(p, off)).gradient;
+        double turn = csg_vec3_norm(csg_vec3_sub(g, other)), way = csg_vec3_norm(off);
+        if (turn > found->jump + found->bend * way + 1e-5)
+            fail_msg("a turn of %g, not %g + %g, over %g, near (%g, %g, %g)", turn, found->jump,
+                     found->bend * way, way, at.x, at.y, at.z);
+    }
+    return found->jump == 0;
+}
+
 /* What mesh/distance/steps.h says of the region's triangle, tried at random points of it. Returns
  * whether it was settled. */
 static bool try_steps(const csgm_scene *scene, const csgm_field *field, csg_random *random,
@@ -127,7 +146,9 @@ static bool try_steps(const csgm_scene *scene, const csgm_field *field, csg_rand
     csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
     csg_steps piece = {.at = {v[0], v[1], v[2]},
                        .step = csg_vec3_scale(axis, region->around),
-                       .stray = found->across * radius};
+                       .stray = found->across * radius,
+                       .jump = found->jump * radius,
+                       .bend = 0.5 * found->bend * radius * radius};
     csg_steps_settle(csg_kernel_for(CSGM_ISA_AUTO), &field->tape, 0, scratch, floats, &piece, 1);
     for (int i = 0; !piece.fails && i < TRIES; i++) {
         double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
@@ -200,6 +221,7 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
     if (is_known) {
         check_gradients(scene, random, at, &region, &found);
         check_differences(scene, random, at, &region, &found);
+        smooth_count += check_bend(scene, random, at, &region, &found);
         step_count += try_steps(scene, field, random, &region, &found, scratch, floats);
     }
     free(scratch);
@@ -302,6 +324,7 @@ static void cones_hold(void **state)
     assert_true(found > 3000);
     assert_true(ranges > 3000);
     assert_true(step_count > 1000);
+    assert_true(smooth_count > 1500);
 }
 
 /* ---- other leaves ---------------------------------------------------------------------------- */
@@ -561,137 +584,14 @@ static void ranges_of_smooth_rules_hold(void **state)
     assert_true(found > 700);
 }
 
-/* ---- where the field is zero ------------------------------------------------------------------ */
-
-static csg_gradients gradients_in_cube(const csgm_field *field, csg_vec3 at, double half,
-                                       bool *is_known)
-{
-    size_t floats = csg_kernel_scratch_floats(field->depth);
-    float *scratch = malloc(floats * sizeof *scratch);
-    assert_non_null(scratch);
-    csg_vec3 c = csg_vec3_sub(at, field->center);
-    const csg_gradients_region region = {{c, c, c}, c, 0, half};
-    csg_gradients found;
-    *is_known = csg_gradients_find(csg_kernel_for(CSGM_ISA_AUTO), &field->tape, &region, scratch,
-                                   floats, &found);
-    free(scratch);
-    return found;
-}
-
-/* A place of the surface, by Newton's steps of the reference; false: there is none near. */
-static bool go_to_surface(const csgm_scene *scene, csg_vec3 *p)
-{
-    for (int step = 0; step < 20 && fabs(test_sample(scene, *p).value) > 1e-9; step++) {
-        csg_vec3 g = test_sample(scene, *p).gradient;
-        double square = fmax(csg_vec3_dot(g, g), 1e-12);
-        *p = csg_vec3_sub(*p, csg_vec3_scale(g, test_sample(scene, *p).value / square));
-    }
-    return fabs(test_sample(scene, *p).value) <= 1e-9;
-}
-
-/* By how much a gradient is farther along u than the balls' hull is. */
-static double beyond_hull(const csg_cone_balls *balls, csg_vec3 g, csg_vec3 u)
-{
-    double most = -INFINITY;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const csg_cone_ball *ball = &balls->items[i];
-        most = fmax(most, u.x * ball->at[0] + u.y * ball->at[1] + u.z * ball->at[2] + ball->spread);
-    }
-    return csg_vec3_dot(g, u) - most;
-}
-
-/* From random places of the cube to the surface: where they end in it gradients are in the hull of
- * those at zero, which is tried in many directions. Returns how many did. */
-static uint32_t try_level(const csgm_scene *scene, csg_random *random, csg_vec3 at, double half,
-                          const csg_gradients *found)
-{
-    uint32_t count = 0;
-    for (int i = 0; i < TRIES; i++) {
-        csg_vec3 p = csg_vec3_make(at.x + half * csg_random_uniform(random, -1, 1),
-                                   at.y + half * csg_random_uniform(random, -1, 1),
-                                   at.z + half * csg_random_uniform(random, -1, 1));
-        bool is_there = go_to_surface(scene, &p);
-        csg_vec3 off = csg_vec3_sub(p, at), g = test_sample(scene, p).gradient;
-        if (!is_there || !(fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= half))
-            continue;
-        for (int k = 0; k < TRIES; k++) {
-            double beyond = beyond_hull(&found->level, g, test_direction(random));
-            if (beyond > 1e-3)
-                fail_msg("a gradient where the field is zero is %g outside, near (%g, %g, %g) "
-                         "within %g",
-                         beyond, at.x, at.y, at.z, half);
-        }
-        count++;
-    }
-    return count;
-}
-
-static void slopes_at_zero_hold(void **state)
-{
-    (void)state;
-    csg_random random = {.state = 103};
-    uint32_t tried = 0;
-    for (int i = 0; i < 24; i++) {
-        const csg_node_kind operators[] = {CSG_NODE_UNION, CSG_NODE_DIFFERENCE,
-                                           CSG_NODE_INTERSECTION};
-        mesh_case c;
-        mesh_case_begin(&c, 1);
-        csg_affine beside = csg_affine_translate(csg_vec3_scale(test_direction(&random), 0.7));
-        csg_node_id root = csg_build_ball(&c.builder, 1, NOWHERE);
-        csg_node_id other = csg_build_ball(&c.builder, 0.8, NOWHERE);
-        other = csg_build_transform(&c.builder, &beside, other, NOWHERE);
-        csg_blend blend = {CSG_BLEND_ROUND, csg_random_uniform(&random, 0.1, 0.6), false};
-        mesh_case_compile(&c, joined(&c, operators[i % 3], blend, root, other));
-        for (int k = 0; k < 12; k++) {
-            csg_vec3 at = test_point(&random, 1.2);
-            double half = exp(csg_random_uniform(&random, -4, -1));
-            bool is_known = go_to_surface(c.scene, &at);
-            if (!is_known)
-                continue;
-            csg_gradients found = gradients_in_cube(c.field, at, half, &is_known);
-            if (is_known && found.has_level && !found.exceeds)
-                tried += try_level(c.scene, &random, at, half, &found);
-        }
-        mesh_case_end(&c);
-    }
-    assert_true(tried > 2000);
-}
-
-/* A wall of 0.1 between balls, rounded by 0.12 all through: gradients are opposite on its sides,
- * but in a cube in which one side is zero alone these climb outwards. */
-static void one_side_of_a_wall_is_a_sheet(void **state)
-{
-    (void)state;
-    mesh_case c;
-    mesh_case_begin(&c, 1);
-    csg_node_id outer = csg_build_ball(&c.builder, 1, NOWHERE);
-    csg_node_id inner = csg_build_ball(&c.builder, 0.9, NOWHERE);
-    mesh_case_compile(&c, joined(&c, CSG_NODE_DIFFERENCE, ROUND(0.12), outer, inner));
-    csg_cone cone;
-    bool is_known;
-    csg_gradients found = gradients_in_cube(c.field, csg_vec3_make(0.985, 0, 0), 0.03, &is_known);
-    assert_true(is_known && found.has_level);
-    assert_false(csg_cone_find_axis(&found.balls, &cone));
-    assert_true(csg_cone_find_axis(&found.level, &cone));
-    assert_true(cone.axis[0] < -0.99 && cone.least > 0.02);
-    mesh_case_end(&c);
-}
-
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shared_faces_are_no_surface),
-        cmocka_unit_test(cones_hold),
-        cmocka_unit_test(cones_of_fillets_hold),
-        cmocka_unit_test(cones_of_outlines_hold),
-        cmocka_unit_test(cones_of_polyhedra_hold),
-        cmocka_unit_test(cones_of_needles_hold),
-        cmocka_unit_test(cones_of_formulas_hold),
-        cmocka_unit_test(cones_of_warps_hold),
-        cmocka_unit_test(cones_of_combinations_hold),
-        cmocka_unit_test(cones_of_rules_hold),
-        cmocka_unit_test(slopes_at_zero_hold),
-        cmocka_unit_test(one_side_of_a_wall_is_a_sheet),
+        cmocka_unit_test(shared_faces_are_no_surface), cmocka_unit_test(cones_hold),
+        cmocka_unit_test(cones_of_fillets_hold),       cmocka_unit_test(cones_of_outlines_hold),
+        cmocka_unit_test(cones_of_polyhedra_hold),     cmocka_unit_test(cones_of_needles_hold),
+        cmocka_unit_test(cones_of_formulas_hold),      cmocka_unit_test(cones_of_warps_hold),
+        cmocka_unit_test(cones_of_combinations_hold),  cmocka_unit_test(cones_of_rules_hold),
         cmocka_unit_test(ranges_of_smooth_rules_hold),
     };
     if (argc > 1)

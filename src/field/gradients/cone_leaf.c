@@ -185,13 +185,18 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
     /* the slack: the frame's own rounding */
     double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
     csg_cone_leaf l = {.balls = balls,
-                       .rho = radius + (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK]};
+                       .rho = radius + (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK],
+                       .bend = INFINITY};
     csg_cone_way way;
     uint32_t first = balls->count;
     balls->corner = 0;
-    if ((leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l.rho, &way)) ||
-        !add_placed(&l, tape, leaf, at))
+    if (leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l.rho, &way))
         return false;
+    double before = l.rho;
+    if (!add_placed(&l, tape, leaf, at))
+        return false;
+    bool is_smooth = balls->count - first == 1 && before > 0 && l.bend < INFINITY;
+    balls->bend = is_smooth ? l.norm * (l.rho / before) * l.bend * (1 + 1e-6) : INFINITY;
     if (has_faces(leaf->op) && balls->count - first > 1)
         balls->corner = l.norm; /* in its own frame they are unit vectors */
     return !leaf->warp || csg_cone_unwarp(&way, balls, first);

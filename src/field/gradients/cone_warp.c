@@ -12,6 +12,10 @@
  *            |s'| / s^2, their part along z by what the quotient moves and by |s'|^2 / s^2 of it
  *   bend     the row along the circle is radius / s times a unit vector around the line, whose
  *            derivative is 1 / s^2 in size; the row across turns by asin(rho / s)
+ *
+ * Of any two points in the ball J differs by no more than `bend` times their distance, row by row:
+ * 1 / (r - rho) for a vector away from an axis, and else what bounds the change from the centre,
+ * since that is of the whole ball.
  */
 #include "field/gradients/cone_warp.h"
 
@@ -47,8 +51,8 @@ static double length_of(double x, double y)
 
 /* Of the map of the warp's own coordinates q: rows of J, how they change, and the image. */
 typedef struct passage {
-    double row[3][3], change[3], norm, image[3], kink[3]; /* kink: what its other side lacks of
-                                                             dw / dz */
+    double row[3][3], change[3], bend[3], norm, image[3], kink[3]; /* kink: what its other side
+                                                                      lacks of dw / dz */
     bool is_kinked;
 } passage;
 
@@ -60,6 +64,7 @@ static bool pass_revolve(const float *own, const double q[3], double rho, passag
     p->row[0][1] = is_clear ? q[1] / r : 0;
     p->row[1][2] = 1;
     p->change[0] = is_clear ? sqrt(2 - 2 * sqrt(1 - s * s)) : 1;
+    p->bend[0] = is_clear ? 1 / (r - rho) : INFINITY;
     p->image[0] = r;
     p->image[1] = q[2];
     return true;
@@ -78,6 +83,7 @@ static bool pass_elbow(const float *own, const double q[3], double rho, passage 
     p->row[0][1] = is_known ? side * (by_a * s - by_b * c) : 0;
     p->row[1][2] = 1;
     p->change[0] = is_straight ? 0 : is_clear ? sqrt(2 - 2 * sqrt(1 - part * part)) : 1;
+    p->bend[0] = is_straight ? 0 : is_clear ? 1 / (r - rho) : INFINITY;
     p->image[0] = b > 0 ? r : a;
     p->image[1] = q[2];
     return true;
@@ -108,7 +114,8 @@ static bool pass_twist(const float *own, const double q[3], double rho, passage 
     p->is_kinked = turns && (q[2] - rho < low || q[2] + rho > high);
     p->kink[0] = turning * y;
     p->kink[1] = -turning * x;
-    p->change[0] = p->change[1] = turns ? fabs(rate) * rho * length_of(1, steep) : 0;
+    p->bend[0] = p->bend[1] = turns ? fabs(rate) * length_of(1, steep) : 0;
+    p->change[0] = p->change[1] = rho * p->bend[0];
     p->norm = steep;
     p->image[0] = x;
     p->image[1] = y;
@@ -151,7 +158,8 @@ static bool pass_taper(const float *own, const double q[3], double rho, passage 
     if (turns) {
         double across = (turn + shrinking) / least;
         double along = turn * moved + shrinking * (moved + r * (shrinking + turn));
-        p->change[0] = p->change[1] = rho * length_of(across, along);
+        p->bend[0] = p->bend[1] = length_of(across, along);
+        p->change[0] = p->change[1] = rho * p->bend[0];
     }
     p->norm = csg_shear_norm(1 / least, along_z);
     p->image[0] = x;
@@ -172,8 +180,10 @@ static bool pass_bend(const float *own, const double q[3], double rho, passage *
     double sine = q[0] / s, cosine = across / s, around = radius / s;
     const double rows[3][3] = {{around * cosine, 0, around * sine}, {0, 1, 0}, {-sine, 0, cosine}};
     memcpy(p->row, rows, sizeof rows);
-    p->change[0] = radius * rho / (least * least);
-    p->change[2] = rho / least;
+    p->bend[0] = radius / (least * least);
+    p->bend[2] = 1 / least;
+    p->change[0] = rho * p->bend[0];
+    p->change[2] = rho * p->bend[2];
     p->norm = fmax(1, radius / least);
     p->image[0] = radius * phi;
     p->image[1] = q[1];
@@ -217,6 +227,7 @@ static bool send(const csg_tape_warp *warp, double c[3], double *radius, csg_con
     transpose_product(m, p.row, turn->back);
     for (int i = 0; i < 3; i++) {
         turn->change[i] = (p.change[i] + ROUNDING) * norm;
+        turn->bend[i] = p.is_kinked ? INFINITY : p.bend[i] * norm * norm;
         p.row[i][2] += p.kink[i];
         c[i] = p.image[i];
     }
@@ -252,11 +263,25 @@ static void turn_ball(const csg_cone_turn *turn, double matrix[3][3], csg_cone_b
     ball->spread = spread;
 }
 
+/* Of J^T g, each changes on the way from one point to another. */
+static double turn_bend(const csg_cone_turn *turn, const csg_cone_balls *balls, uint32_t first)
+{
+    double bend = turn->norm * turn->norm * balls->bend;
+    for (int k = 0; k < 3; k++) {
+        double most = 0;
+        for (uint32_t i = first; i < balls->count; i++)
+            most = fmax(most, fabs(balls->items[i].at[k]) + balls->items[i].spread);
+        bend += most > 0 ? turn->bend[k] * most : 0;
+    }
+    return bend * (1 + ROUNDING);
+}
+
 bool csg_cone_unwarp(const csg_cone_way *way, csg_cone_balls *balls, uint32_t first)
 {
     for (uint32_t i = way->count; i > 0; i--) {
         csg_cone_turn turn = way->turns[i - 1];
         uint32_t end = balls->count;
+        balls->bend = turn_bend(&turn, balls, first);
         for (uint32_t k = first; k < end; k++) {
             if (turn.is_kinked && balls->count >= CSG_CONE_MOST)
                 return false;

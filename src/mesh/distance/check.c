@@ -138,30 +138,34 @@ typedef struct look {
 
 /* Gradients that stray so much more than a value can be need not be asked about: no gradient is
  * longer than `longest`, and no place farther from zero than that on both sides. */
-static bool may_settle_by_steps(const proof *p, const look *l, double stray, double longest)
+static bool may_settle_by_steps(const proof *p, const csg_steps *steps, double longest)
 {
-    return stray * l->d.radius < CSG_STEPS_MOST_CUTS * longest * p->error;
+    return csg_steps_off(steps, CSG_STEPS_MOST_CUTS) < longest * p->error;
 }
 
-/* Whether all of it is inside a step along the axis that its gradients have in common, and outside
- * a step back. *steps, if that is to be asked of values. */
+/* Whether all of it is inside a step along the axis that its gradients have in common, or else
+ * along its normal, and outside a step back. *steps, if that is to be asked of values. */
 static verdict settle_by_cone(const proof *p, const settler *s, const piece *one, const look *l,
                               csg_steps *steps, bool *asks)
 {
     csg_cone cone;
     const csg_gradients *g = &l->gradients;
     *asks = false;
-    if (!l->is_known || !csg_gradients_find_axis(g, &cone))
+    if (!l->is_known)
         return OPEN;
+    bool has_axis = csg_gradients_find_axis(g, &cone);
     double least = cone.least * p->error - slack_of(p);
-    double longest = fmin(g->longest, (double)s->tape.lipschitz);
-    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
-    if (g->low >= -least && g->high <= least)
+    if (has_axis && g->low >= -least && g->high <= least)
         return SETTLED;
-    *asks = may_settle_by_steps(p, l, g->across, longest);
-    *steps = (csg_steps){.at = {one->at[0], one->at[1], one->at[2]},
-                         .step = csg_vec3_scale(axis, p->error),
-                         .stray = g->across * l->d.radius};
+    double r = l->d.radius, longest = fmin(g->longest, (double)s->tape.lipschitz);
+    csg_vec3 axis = {cone.axis[0], cone.axis[1], cone.axis[2]};
+    *steps = (csg_steps){
+        .at = {one->at[0], one->at[1], one->at[2]},
+        .step = csg_vec3_scale(has_axis ? axis : one->normal, has_axis ? p->error : -p->error),
+        .stray = g->across * r,
+        .jump = g->jump * r,
+        .bend = 0.5 * g->bend * r * r};
+    *asks = may_settle_by_steps(p, steps, longest);
     return OPEN;
 }
 
@@ -189,9 +193,10 @@ static verdict settle_otherwise(const proof *p, settler *s, const piece *one, co
     csg_steps inward = {.at = {one->at[0], one->at[1], one->at[2]},
                         .step = csg_vec3_scale(one->normal, -p->error),
                         .stray = steepest * l->d.radius,
+                        .jump = INFINITY,
                         .fails = true};
     if ((!l->is_known || l->gradients.stray > 0.5 * steepest) &&
-        may_settle_by_steps(p, l, steepest, steepest))
+        may_settle_by_steps(p, &inward, steepest))
         csg_steps_settle(p->remesh->probe.marching->kernel, &s->tape, slack_of(p), s->scratch,
                          p->scratch_floats, &inward, 1);
     if (!inward.fails)

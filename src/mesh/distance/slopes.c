@@ -22,6 +22,12 @@ enum { CORNERS = 3 /* of a triangle */ };
 /* ---- differences and shares --------------------------------------------------------------------
  */
 
+/* Whether gradients need not be in the hull of the balls. */
+static bool exceeds_hull(const operand *o)
+{
+    return o->stretched || o->faces || o->balls.has_edges;
+}
+
 static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
 {
     const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
@@ -56,6 +62,31 @@ double csg_slopes_change(const walker *w, const operand *a, const operand *b)
                 fmax(most, faces ? apart(p, q) * w->radius : span_of(w, d, p->spread + q->spread));
         }
     return faces ? 1.41421357 * most : most;
+}
+
+double csg_slopes_change_of_sum(const walker *w, const operand *a, const operand *b)
+{
+    double most = 0;
+    if (exceeds_hull(a) || exceeds_hull(b))
+        return (a->longest + b->longest) * w->radius;
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++) {
+            const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
+            const double sum[3] = {p->at[0] + q->at[0], p->at[1] + q->at[1], p->at[2] + q->at[2]};
+            most = fmax(most, span_of(w, sum, p->spread + q->spread));
+        }
+    return most;
+}
+
+double csg_slopes_apart(const operand *a, const operand *b)
+{
+    double most = 0;
+    if (exceeds_hull(a) || exceeds_hull(b))
+        return a->longest + b->longest;
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++)
+            most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
+    return most;
 }
 
 /* By how much it can change from c, within the region. */
@@ -173,6 +204,8 @@ bool csg_slopes_mix(operand *a, const operand *b, range share, bool is_sharp)
         a->longest = b->longest;
         a->stretched = b->stretched;
         a->faces = b->faces;
+        a->jump = b->jump;
+        a->bend = b->bend;
         return true;
     }
     operand before = *a;
@@ -187,6 +220,7 @@ bool csg_slopes_mix(operand *a, const operand *b, range share, bool is_sharp)
     a->longest = fmax(a->longest, b->longest);
     a->stretched |= b->stretched;
     a->faces |= b->faces;
+    a->jump = INFINITY;
     return true;
 }
 
@@ -372,6 +406,7 @@ static void find_range(const walker *w, const csg_tape_node *node, operand *leaf
         stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
         stray = 2 * fmax(csg_norm3(balls[0].at), leaf->balls.corner);
+    stray = fmin(stray, leaf->jump + 0.5 * leaf->bend * w->flat);
     if (!is_concave(node)) {
         leaf->low -= stray * w->flat;
         leaf->high += stray * w->flat;
@@ -395,6 +430,7 @@ static void take_any(const walker *w, operand *leaf)
     leaf->balls.has_edges = false;
     leaf->balls.corner = 0;
     leaf->balls.items[0] = (csg_cone_ball){.at = {0, 0, 0}, .spread = steepest};
+    leaf->balls.bend = INFINITY;
 }
 
 /* Faces that hardly turn, as those of a curve that was cut into segments, are one smooth one. */
@@ -409,6 +445,7 @@ static void join_faces(operand *leaf)
         !(one.spread <= NARROW * leaf->longest))
         return;
     leaf->balls.items[0] = one;
+    leaf->balls.bend = INFINITY;
     leaf->balls.count = 1;
     leaf->balls.has_edges = leaf->stretched = leaf->faces = false;
     leaf->balls.corner = 0;
@@ -423,6 +460,14 @@ double csg_slopes_span(const walker *w, const operand *leaf)
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         most = fmax(most, span_of(w, leaf->balls.items[i].at, leaf->balls.items[i].spread));
     return most;
+}
+
+/* In the end they stray by no more than that, however fast. */
+static void find_bend(const walker *w, operand *leaf)
+{
+    bool is_slow = leaf->balls.bend * w->radius < 2 * leaf->balls.items[0].spread;
+    leaf->jump = is_slow ? 0 : csg_slopes_apart(leaf, leaf);
+    leaf->bend = is_slow ? leaf->balls.bend : 0;
 }
 
 static bool push_leaf(walker *w, const csg_tape_node *node)
@@ -447,6 +492,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node)
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
+    find_bend(w, leaf);
     find_range(w, node, leaf);
     double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
@@ -474,12 +520,6 @@ static bool walk(walker *w)
             return false;
     }
     return true;
-}
-
-/* Whether gradients need not be in the hull of the balls. */
-static bool exceeds_hull(const operand *root)
-{
-    return root->stretched || root->faces || root->balls.has_edges;
 }
 
 /* The middle of the balls, whose hull they are in, or where combinations of these may be longer of
@@ -537,6 +577,8 @@ static bool take_result(const walker *w, csg_gradients *out)
     out->high = root->high;
     out->least = root->least;
     out->most = root->most;
+    out->jump = root->jump;
+    out->bend = root->bend;
     out->is_axis_known = false;
     find_stray(w, root, out);
     out->doubt = root->doubt;

@@ -7,6 +7,12 @@
  * Leaves are asked in a ball around the region; how far operands part from each other in it is told
  * by its extent along their gradients' difference, which along a straight fillet is none.
  *
+ * And how fast they turn, but for jumps: a blend's shares by no more than its operands part from
+ * each other, over its width. Where gradients stray by jump + bend d over a distance of d, values
+ * between the corners of a triangle within r of a point are within jump r + bend r^2 / 2 of those
+ * that these say: the sum of l_i (f(v_i) - f(x) - g(x) (v_i - x)), where x = sum l_i v_i and the
+ * sum of l_i |v_i - x|^2 is at most r^2.
+ *
  * And the field's range over a triangle in the region: that of a leaf from its values at the
  * corners and how far its gradients stray, of convex primitives by their tangent planes, then
  * through the operators, which are monotone. A triangle that ends at a crease has a narrow one.
@@ -41,6 +47,8 @@ typedef struct csg_gradients {
     bool exceeds;  /* they may be combinations of the balls with weights of more than 1 in all */
     double stray;  /* no gradient is farther from `middle`; INFINITY: not known */
     double across; /* the same, of their parts along the triangle */
+    double jump, bend; /* no two of them differ by more than jump + bend times the distance between
+                          their points; jump is INFINITY where that is not known */
     double middle[3];
     double doubt;                 /* rounding of the field's values */
     csg_cone cone;                /* the axis of `balls`, if it was looked for on the way */

@@ -12,10 +12,11 @@ typedef struct csg_slopes_operand {
     double low, high;    /* over the triangle */
     double least, most;  /* over the region, but for rounding */
     csg_cone_balls balls;
-    double longest; /* gradient */
-    bool stretched; /* shares may add up to more than 1, or corners' gradients are longer than
-                       faces' */
-    bool faces;     /* gradients between the balls may be as long as these: where faces meet */
+    double jump, bend; /* as in csg_gradients */
+    double longest;    /* gradient */
+    bool stretched;    /* shares may add up to more than 1, or corners' gradients are longer than
+                          faces' */
+    bool faces;        /* gradients between the balls may be as long as these: where faces meet */
 } csg_slopes_operand;
 
 typedef struct csg_slopes_walker {
@@ -54,7 +55,10 @@ double csg_slopes_value(const csg_slopes_operand *o, csg_slopes_which what);
  * apart: at most sqrt(2), for a disc without thickness. */
 double csg_slopes_change(const csg_slopes_walker *w, const csg_slopes_operand *a,
                          const csg_slopes_operand *b);
-/* The same from c, with rounding. */
+/* The same of their sum. */
+double csg_slopes_change_of_sum(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                                const csg_slopes_operand *b);
+/* As csg_slopes_change(), from c, with rounding. */
 double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
                         const csg_slopes_operand *b);
 /* a becomes the mixture with b, in any of the shares of a; the value is the caller's. False: no
@@ -75,6 +79,8 @@ bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis
                                csg_cone_ball *out);
 /* The same of any; false also where they have no axis in common. */
 bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
+/* How far gradients of two operands, or of one, can be from each other. */
+double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b);
 /* How much an operand can change from c within the region. */
 double csg_slopes_span(const csg_slopes_walker *w, const csg_slopes_operand *o);
 /* The value at c of what a node is the root of. */

@@ -62,6 +62,63 @@ static bool mix_round(const operand *of, const range *weights, uint32_t count, o
     return total.high > 0;
 }
 
+/* How fast the shares change on the way from one place to another. A share is u_i / S with
+ * u_i = (f_i - F + w)_+, S the sum of all and w^2 that of their squares: so it moves the gradient
+ * by the sum of (g_i - g) (v_i - v) / S over those that are active, v_i by how much f_i changes and
+ * g, v the means in these shares. No two g_i and no two v_i are farther apart than `turn`, per
+ * length; of two operands the sum is w^2 / S^3 times one product of these, and S is w at least. */
+static double shares_bend(const range *weights, uint32_t count, uint32_t active, double turn,
+                          double w)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += weights[i].low;
+    sum = fmax(sum, w);
+    return turn * turn * (active == 2 ? w * w / (sum * sum * sum) : (active - 1) / sum);
+}
+
+static void find_bend(const operand *of, const range *weights, uint32_t count, double w,
+                      operand *sum)
+{
+    double jump = 0, bend = 0, turn = 0;
+    uint32_t active = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (weights[i].high <= 0)
+            continue;
+        active++;
+        jump = fmax(jump, of[i].jump);
+        bend = fmax(bend, of[i].bend);
+        for (uint32_t k = 0; k < i; k++)
+            if (weights[k].high > 0)
+                turn = fmax(turn, csg_slopes_apart(&of[i], &of[k]));
+    }
+    sum->jump = jump;
+    sum->bend = bend + shares_bend(weights, count, active, turn, w);
+}
+
+/* Where two operands face each other, as a wall's sides do, their sum hardly changes, and that of
+ * their weights is no more than `sum`. Since the weights' squares add up to w^2, the smaller one is
+ * no more than sum / 2 - sqrt(w^2 / 2 - sum^2 / 4), and the larger one no less than what is left.
+ */
+static void part_two(const walker *w, const operand *of, range weights[2], double turn, double size,
+                     double doubt)
+{
+    double sum = 2 * (size + doubt) + turn * (of[0].value + of[1].value) + of[0].doubt +
+                 of[1].doubt + csg_slopes_change_of_sum(w, &of[0], &of[1]);
+    double rest = 0.5 * size * size - 0.25 * sum * sum;
+    if (!(rest > 0))
+        return;
+    double smaller = fmax(0, 0.5 * sum - sqrt(rest)) + doubt;
+    double larger = sqrt(fmax(0, size * size - smaller * smaller)) - doubt;
+    for (int i = 0; i < 2; i++)
+        if (weights[i].high < larger || weights[1 - i].low > smaller) {
+            weights[i].high = fmin(weights[i].high, smaller);
+            weights[i].low = fmin(weights[i].low, weights[i].high);
+            weights[1 - i].low = fmax(weights[1 - i].low, larger);
+            weights[1 - i].high = fmax(weights[1 - i].high, weights[1 - i].low);
+        }
+}
+
 /* The same where the whole field is zero: there the weights' squares add up to w^2, and each is
  * what its operand is anyway, which in a thin wall says much more than how far operands part. */
 static void find_level(walker *w, const operand *of, const range *weights, uint32_t count,
@@ -85,6 +142,8 @@ static void find_level(walker *w, const operand *of, const range *weights, uint3
         at_zero[i].high = fmin(fmin(high, sqrt(fmax(below, 0))), weights[i].high);
         at_zero[i].high = fmax(at_zero[i].high, at_zero[i].low); /* nothing is zero, but rounding */
     }
+    if (count == 2)
+        part_two(w, of, at_zero, turn, size, doubt);
     w->has_level = mix_round(of, at_zero, count, &w->level);
 }
 
@@ -115,6 +174,8 @@ bool csg_slopes_join_round(walker *w, const csg_tape_node *node)
     bool done = mix_round(of, weights, node->arity, &sum);
     if (node == &w->tape->nodes[w->tape->count - 1])
         find_level(w, of, weights, node->arity, turn, size);
+    if (done)
+        find_bend(of, weights, node->arity, size, &sum);
     w->top -= node->arity - 1;
     if (!done)
         return false;

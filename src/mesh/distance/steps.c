@@ -94,7 +94,7 @@ static inline void look_at(settling *s, const part *small, parts *next)
     csg_steps *piece = &s->pieces[of];
     double value = (double)least - s->slack;
     if (!(least > s->few[of]))
-        fail(piece, value > 0 ? piece->stray / (value * CSG_STEPS_MOST_CUTS) : INFINITY);
+        fail(piece, value > 0 ? csg_steps_off(piece, CSG_STEPS_MOST_CUTS) / value : INFINITY);
     else if (next->count == MOST_ITEMS || s->part_counts[of]++ == MOST_PARTS)
         fail(piece, 1);
     else
@@ -146,9 +146,9 @@ static void begin(settling *s, size_t count, parts *out)
 static void set_limits(settling *s, size_t count, double cuts)
 {
     for (size_t i = 0; i < count; i++) {
-        double stray = s->pieces[i].stray;
-        s->enough[i] = (float)((stray / cuts + s->slack) * (1 + 1e-6));
-        s->few[i] = (float)(stray / CSG_STEPS_MOST_CUTS + s->slack);
+        const csg_steps *piece = &s->pieces[i];
+        s->enough[i] = (float)((csg_steps_off(piece, cuts) + s->slack) * (1 + 1e-6));
+        s->few[i] = (float)(csg_steps_off(piece, CSG_STEPS_MOST_CUTS) + s->slack);
     }
 }
 

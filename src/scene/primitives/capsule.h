@@ -116,7 +116,8 @@ static inline bool csg_capsule_gradients(csg_cone_leaf *l)
     if (!(least > 0.7 * l->rho))
         return false;
     csg_capsule_value(own, q, &g);
-    return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, l->rho / least + 1e-5);
+    l->bend = 1 / least;
+    return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, l->rho * l->bend + 1e-5);
 }
 
 static inline bool csg_capsule_may_crease(const float *own, const float q[3], float reach,

@@ -15,6 +15,10 @@
  * since |sum w n| <= sum w. So what climbs with all faces' gradients climbs there too. A face
  * takes part when its plane is near enough to be the nearest one anywhere in the ball and, outside,
  * when the ball may be in front of its plane. Primitives of this kind have the trait FACES.
+ *
+ * Where all gradients are in one ball of vectors, a primitive also says how fast they turn: by no
+ * more than `bend` per length between any two points of the ball. A unit vector away from a convex
+ * core turns by 1 / |u|.
  */
 #ifndef CSG_SCENE_CONE_BALL_H
 #define CSG_SCENE_CONE_BALL_H
@@ -34,8 +38,10 @@ typedef struct csg_cone_balls {
     csg_cone_ball items[CSG_CONE_MOST];
     uint32_t count;
     bool has_edges; /* of a primitive */
-    double
-        corner; /* of the leaf added last: 0, or how long its gradients may be where faces meet */
+    /* Of the leaf added last: */
+    double corner; /* 0, or how long its gradients may be where faces meet */
+    double bend;   /* no two gradients differ by more than that times the distance between their
+                      points; INFINITY: not known */
 } csg_cone_balls;
 
 /* A face as a field of its own: within [value - below, value + above] + (its ball's centre) .
@@ -54,6 +60,7 @@ typedef struct csg_cone_leaf {
     double q[3], rho;
     double turn[3][3]; /* own gradient -> tape's: sigma times the frame's transpose */
     double norm;       /* of turn, at least */
+    double bend;       /* own gradients', per length; INFINITY unless it is said */
 } csg_cone_leaf;
 
 /* Own gradients within `spread` of (x, y, z). False: there are too many. */
@@ -97,6 +104,8 @@ static inline double csg_cone_turn_within(double d, double rho)
 static inline bool csg_cone_add_away(csg_cone_leaf *l, double x, double y, double z)
 {
     double d = sqrt(x * x + y * y + z * z), spread = csg_cone_turn_within(d, l->rho);
+    if (d > l->rho)
+        l->bend = 1 / (d - l->rho);
     return spread < 1.4 && csg_cone_add(l, -x / d, -y / d, -z / d, spread);
 }
 

@@ -238,9 +238,9 @@ static inline bool csg_ellipsoid_is_clear(const csg_cone_leaf *l)
 
 /* The normal of the nearest point y is along N = (y_i / e_i^2), so a turn is at most K / |N| times
  * y's way, K = 1 / e_min^2: the curvature there. Over the ball y moves no farther than s, where
- * (1 - depth K / (|N| - K s)) s = rho; along the way |N| falls by at most K s. The turn; INFINITY:
- * not known. */
-static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double value)
+ * (1 - depth K / (|N| - K s)) s = rho; along the way |N| falls by at most K s. The turn, and per
+ * length between any two points; INFINITY: not known. */
+static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double value, double *bend)
 {
     const float *own = l->own;
     const double n[3] = {(double)g.x, (double)g.y, (double)g.z};
@@ -252,10 +252,14 @@ static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double 
     }
     double length = 0.9999 * sqrt(square), b = length + steepest * (l->rho - depth);
     double root = b * b - 4 * steepest * l->rho * length;
+    *bend = INFINITY;
     if (!(b > 0 && root > 0) || (depth > 0 && !csg_ellipsoid_is_clear(l)))
         return INFINITY;
     double way = 2 * l->rho * length / (b + sqrt(root)), left = length - steepest * way;
-    return left > 1e-3 * length && left > steepest * depth ? steepest * way / left : INFINITY;
+    if (!(left > 1e-3 * length && left > steepest * depth))
+        return INFINITY;
+    *bend = steepest / (left - steepest * depth);
+    return steepest * way / left;
 }
 
 static inline bool csg_ellipsoid_gradients(csg_cone_leaf *l)
@@ -265,8 +269,9 @@ static inline bool csg_ellipsoid_gradients(csg_cone_leaf *l)
     double value = (double)csg_ellipsoid_value(own, q, &g), depth = fmax(value + l->rho, 0);
     double least = (double)own[2], curvature = fmax((double)own[0], (double)own[1]);
     curvature /= least * least;
-    double spread = curvature * depth < 1 ? l->rho * curvature / (1 - curvature * depth) : INFINITY;
-    spread = fmin(spread, csg_ellipsoid_turn(l, g, value));
+    double by_all = curvature * depth < 1 ? curvature / (1 - curvature * depth) : INFINITY, by_ball;
+    double spread = fmin(l->rho * by_all, csg_ellipsoid_turn(l, g, value, &by_ball));
+    l->bend = fmin(by_all, by_ball);
     if (!(spread < 1.4))
         return false;
     return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, spread + 1e-4);

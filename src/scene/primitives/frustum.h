@@ -170,22 +170,28 @@ static inline bool csg_frustum_gradients(csg_cone_leaf *l)
     double value = (double)own[6] - (double)csg_frustum_value(own, q, &g);
     /* All over the ball the nearest place is on the side, or on a cap. */
     double along = (l->q[2] + (double)own[2]) * nx - (radius - (double)own[0]) * nz;
-    double wide = l->rho * (1 + 1e-4), bend = csg_cone_turn_within(radius, l->rho);
-    if (side > wide && along > wide && along + wide < (double)own[5] && bend < 1.4)
-        return csg_cone_add(l, -nx * l->q[0] / radius, -nx * l->q[1] / radius, -nz, nx * bend);
+    double wide = l->rho * (1 + 1e-4), turn = csg_cone_turn_within(radius, l->rho);
+    if (side > wide && along > wide && along + wide < (double)own[5] && turn < 1.4) {
+        l->bend = nx / (radius - l->rho);
+        return csg_cone_add(l, -nx * l->q[0] / radius, -nx * l->q[1] / radius, -nz, nx * turn);
+    }
     double rim = (double)own[1] + (l->q[2] < 0 ? -(double)own[7] : (double)own[7]);
-    if (fabs(l->q[2]) - (double)own[2] > wide && radius + wide < rim)
+    if (fabs(l->q[2]) - (double)own[2] > wide && radius + wide < rim) {
+        l->bend = 0;
         return csg_cone_add(l, 0, 0, copysign(1, -l->q[2]), 0);
-    if (most > 0 && value > 1.2 * l->rho)
+    }
+    if (most > 0 && value > 1.2 * l->rho) {
+        l->bend = 1 / (value * (1 - 1e-5) - l->rho);
         return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z,
                             csg_cone_turn_within(value, l->rho) + 1e-5);
+    }
     /* Outside by up to 2.2 rho; at an acute rim a face takes part from further below its plane. */
     double from = fmin(0, most - l->rho), reach = l->rho * (1 + 2.2 / nx);
     uint32_t faces = 0;
     bool done = true;
     l->sharp_from = (double)own[6];
     if (side + reach >= from) {
-        double turn = csg_cone_turn_within(radius, l->rho), v = (double)own[6] - side;
+        double v = (double)own[6] - side;
         double ex = radius > 0 ? l->q[0] / radius : 0, ey = radius > 0 ? l->q[1] / radius : 0;
         const csg_cone_face bent = {v, 0.5 * nx * turn * l->rho, 0},
                             tip = {v, nx * l->rho, nx * l->rho};

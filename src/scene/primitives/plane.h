@@ -117,6 +117,7 @@ static inline int csg_plane_falls_outwards(const float *own)
 static inline bool csg_plane_gradients(csg_cone_leaf *l)
 {
     const float *n = l->own;
+    l->bend = 0;
     return csg_cone_add(l, -(double)n[0], -(double)n[1], -(double)n[2], 0);
 }
 

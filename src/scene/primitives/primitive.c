@@ -87,10 +87,12 @@ bool csg_cone_add_box(csg_cone_leaf *l, int axes)
         bool alone = a[k] > l->rho;
         for (int j = 0; j < axes; j++)
             alone = alone && (j == k || a[j] < -l->rho);
-        if (alone)
-            return csg_cone_add(l, k == 0 ? copysign(1, -l->q[0]) : 0,
-                                k == 1 ? copysign(1, -l->q[1]) : 0,
-                                k == 2 ? copysign(1, -l->q[2]) : 0, 0);
+        if (!alone)
+            continue;
+        l->bend = 0;
+        return csg_cone_add(l, k == 0 ? copysign(1, -l->q[0]) : 0,
+                            k == 1 ? copysign(1, -l->q[1]) : 0, k == 2 ? copysign(1, -l->q[2]) : 0,
+                            0);
     }
     if (sqrt(over[0] * over[0] + over[1] * over[1] + over[2] * over[2]) > 1.2 * l->rho)
         return csg_cone_add_away(l, over[0], over[1], over[2]);

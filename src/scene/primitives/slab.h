@@ -71,6 +71,7 @@ static inline bool csg_slab_gradients(csg_cone_leaf *l)
 {
     if (fabs(l->q[2]) <= l->rho)
         return false;
+    l->bend = 0;
     return csg_cone_add(l, 0, 0, l->q[2] < 0 ? 1 : -1, 0);
 }
 

@@ -136,7 +136,8 @@ static inline bool csg_torus_gradients(csg_cone_leaf *l)
         return false;
     if (!(d > 0.7 * l->rho && radius > 0.7 * l->rho))
         return false;
-    return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, l->rho / fmin(d, radius) + 1e-5);
+    l->bend = 1 / fmin(d, radius);
+    return csg_cone_add(l, (double)g.x, (double)g.y, (double)g.z, l->rho * l->bend + 1e-5);
 }
 
 /* At the core curve, and on the axis through the ring; an arc has more such places outside. */
