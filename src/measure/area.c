@@ -301,7 +301,7 @@ static account find_account(const job *j, const csg_measure_cube *q, const csg_h
     if (selected == CSG_TRUTH_NO)
         *turn = 0;
     else if (selected == CSG_TRUTH_YES)
-        *turn = fmin(1, 2 * sqrt(fmax(1 - cosine * cosine, 0)));
+        *turn = fmin(1, sqrt(fmax(1 - cosine * cosine, 0)));
     find_faces(half, halves, f, enough, &a);
     take_graph(&groups[0], half, selected, excess, &a);
     return a;

@@ -39,7 +39,7 @@ static double excess_at(const csg_graph_patch *q, const level *l, const double a
 /* How the gradient turns over the patch: at most along each axis and how that changes; from p_0. */
 typedef struct tilt {
     double turn[2], change[2], all;
-    double most; /* |p - p_0| */
+    double first, most; /* |p - p_0| at the middle, and at most */
 } tilt;
 
 static tilt tilt_of(const csg_graph_patch *q, const level *l)
@@ -50,8 +50,9 @@ static tilt tilt_of(const csg_graph_patch *q, const level *l)
     const double third[2][2][2] = {
         {{t[CSG_GRAPH_XXX], t[CSG_GRAPH_XXY]}, {t[CSG_GRAPH_XXY], t[CSG_GRAPH_XYY]}},
         {{t[CSG_GRAPH_XXY], t[CSG_GRAPH_XYY]}, {t[CSG_GRAPH_XYY], t[CSG_GRAPH_YYY]}}};
-    tilt out = {.most = sqrt((q->g[0] - l->p[0]) * (q->g[0] - l->p[0]) +
-                             (q->g[1] - l->p[1]) * (q->g[1] - l->p[1]))};
+    tilt out = {.first = sqrt((q->g[0] - l->p[0]) * (q->g[0] - l->p[0]) +
+                              (q->g[1] - l->p[1]) * (q->g[1] - l->p[1]))};
+    out.most = out.first;
     for (int i = 0; i < 2; i++) {
         double square = 0;
         for (int k = 0; k < 2; k++) {
@@ -113,9 +114,15 @@ static double excess_of_cut(const csg_graph_base *g, const csg_graph_patch *q, c
     return excess_of_part(q, l, q->z + h) - excess_of_part(q, l, q->z - h);
 }
 
+/* Of a patch: the excess of its polynomial, what is open of that for its being cut, how far the
+ * surface's own may be from it, and what it is at most. */
+typedef struct share {
+    double sum, open, off, most;
+} share;
+
 /* Over what the patch shows of the surface. enough: what may be left open for its being cut. */
 static void add_excess(const csg_graph_base *g, const csg_graph_patch *q, const level *l,
-                       const csg_graph_room *off, double enough, int more, double sums[2])
+                       const csg_graph_room *off, double enough, int more, share *to)
 {
     double bends = csg_graph_patch_bend(q) + csg_graph_patch_third(q), beyond = bends + off->most,
            reach = csg_graph_patch_line(q) + beyond;
@@ -131,14 +138,15 @@ static void add_excess(const csg_graph_base *g, const csg_graph_patch *q, const 
         int axis = csg_graph_patch_bent_axis(q);
         for (int side = -1; side <= 1; side += 2) {
             csg_graph_patch half = csg_graph_patch_half(q, axis, side);
-            add_excess(g, &half, l, off, 0.5 * enough, more - 1, sums);
+            add_excess(g, &half, l, off, 0.5 * enough, more - 1, to);
         }
         return;
     }
     double all = t.most + off->turned;
-    open += touched * all * off->turned;
-    sums[0] += fmax(sum - open, 0);
-    sums[1] += fmin(sum + open, 0.5 * touched * all * all);
+    to->sum += sum;
+    to->open += open;
+    to->off += touched * (t.most + 0.5 * off->turned) * off->turned;
+    to->most += 0.5 * touched * all * all;
 }
 
 typedef struct excess {
@@ -146,13 +154,33 @@ typedef struct excess {
     double sums[2];
 } excess;
 
+/* With e how far p is off, A errs by |p - p_0| |e| + |e|^2 / 2 at most, as A's second derivatives
+ * are no more than 1. Over all of a first patch that is no more than by the means of the squares of
+ * e and of |p - p_0|, which is `first` and what p turns by along |d|; |d|^2 is 2/3 half^2 in the
+ * mean. */
+static double off_of_first(const csg_graph_patch *q, const tilt *t, const csg_graph_room *off)
+{
+    static const double ROOT_SECOND = 0.8165;
+    double turn = sqrt(t->turn[0] * t->turn[0] + t->turn[1] * t->turn[1]);
+    return csg_graph_patch_area(q) * off->turned_rms *
+           (t->first + ROOT_SECOND * turn * q->half[0] + 0.5 * off->turned_rms);
+}
+
 static double cross(void *user, const csg_graph_base *g, const csg_graph_patch *q,
                     const csg_graph_room *off)
 {
     excess *e = user;
-    double area = csg_graph_patch_area(q), most = tilt_of(q, &e->plane).most;
-    add_excess(g, q, &e->plane, off, CSG_GRAPH_SHARE * area * most * off->turned, CSG_GRAPH_HALVED,
-               e->sums);
+    const tilt t = tilt_of(q, &e->plane);
+    double area = csg_graph_patch_area(q), first = g->half / CSG_GRAPH_SIDE,
+           most = area * t.most * off->turned;
+    bool is_first = q->half[0] == first && q->half[1] == first;
+    share s = {.sum = 0};
+    if (is_first)
+        most = fmin(most, off_of_first(q, &t, off));
+    add_excess(g, q, &e->plane, off, CSG_GRAPH_SHARE * most, CSG_GRAPH_HALVED, &s);
+    double open = s.open + (is_first ? fmin(s.off, off_of_first(q, &t, off)) : s.off);
+    e->sums[0] += fmax(s.sum - open, 0);
+    e->sums[1] += fmin(s.sum + open, s.most);
     return 0;
 }
 

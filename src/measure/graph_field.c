@@ -194,9 +194,11 @@ static csg_graph_room room_of(const visit *v, const choice *c, uint32_t alive, i
             between = apart_of(&c->q[i], &c->q[k], &tilt);
             off.most = fmax(off.most, between + v->off[k].most);
             off.turned = fmax(off.turned, tilt + v->off[k].turned);
+            off.turned_rms = INFINITY;
         } else {
             find_heights(v, c, k, &from, &to);
             between = fmax(high - from, to - low);
+            off.turned_rms = INFINITY;
             off.most = fmax(off.most, between);
         }
         *apart = fmax(*apart, between);

@@ -296,11 +296,9 @@ csg_graph_rule csg_graph_patch_rule(const csg_graph_patch *q, double value)
     int count = clip(q, value, polygon);
     csg_graph_rule rule;
     rule.count = 0;
-    rule.area = 0;
     for (int i = 1; i + 1 < count; i++) {
         const double *t[3] = {polygon[0], polygon[i], polygon[i + 1]};
         double area = triangle_area(t[0], t[1], t[2]);
-        rule.area += area;
         for (int n = 0; n < 3; n++) {
             const double *a = t[n], *b = t[(n + 1) % 3];
             rule.at[rule.count][0] = 0.5 * (a[0] + b[0]);
@@ -311,20 +309,52 @@ csg_graph_rule csg_graph_patch_rule(const csg_graph_patch *q, double value)
     return rule;
 }
 
-typedef struct part {
-    double area, line, bent; /* integrals of 1, of the linear part, of that and the bends */
-} part;
+/* With u >= v >= 0 and X, Y in [-1, 1]: where s + u X + v Y > 0, as the second and third difference
+ * of squares and cubes; `of_narrow` is the inner difference, over v. */
+typedef struct ramp {
+    double s, u, v, area;
+} ramp;
 
-/* Where value + g . d > 0. */
-static part find_part(const csg_graph_patch *q, double value)
+static ramp ramp_of(const csg_graph_patch *q, double value)
+{
+    double a = fabs(q->g[0]) * q->half[0], b = fabs(q->g[1]) * q->half[1];
+    return (ramp){.s = value, .u = fmax(a, b), .v = fmin(a, b), .area = csg_graph_patch_area(q)};
+}
+
+static double of_narrow_squares(double t, double v)
+{
+    return t >= v ? 4 * t : t > -v ? (t + v) * (t + v) / v : 0;
+}
+
+static double of_narrow_cubes(double t, double v)
+{
+    return t >= v ? 6 * t * t + 2 * v * v : t > -v ? (t + v) * (t + v) * (t + v) / v : 0;
+}
+
+/* The part's share of the patch's area. */
+static double area_of_part(const ramp *r)
+{
+    if (fabs(r->s) >= r->u + r->v)
+        return r->s > 0 ? r->area : 0;
+    return r->area / (8 * r->u) *
+           (of_narrow_squares(r->s + r->u, r->v) - of_narrow_squares(r->s - r->u, r->v));
+}
+
+/* The integral of the linear part over it. */
+static double line_of_part(const ramp *r)
+{
+    if (fabs(r->s) >= r->u + r->v)
+        return r->s > 0 ? r->area * r->s : 0;
+    return r->area / (24 * r->u) *
+           (of_narrow_cubes(r->s + r->u, r->v) - of_narrow_cubes(r->s - r->u, r->v));
+}
+
+static double bend_of_part(const csg_graph_patch *q, double value)
 {
     const csg_graph_rule rule = csg_graph_patch_rule(q, value);
-    part sum = {.area = rule.area};
-    for (int i = 0; i < rule.count; i++) {
-        double line = line_at(q, value, rule.at[i]);
-        sum.line += rule.weight[i] * line;
-        sum.bent += rule.weight[i] * (line + bend_at(q, rule.at[i]));
-    }
+    double sum = 0;
+    for (int i = 0; i < rule.count; i++)
+        sum += rule.weight[i] * bend_at(q, rule.at[i]);
     return sum;
 }
 
@@ -341,10 +371,12 @@ double csg_graph_patch_above(const csg_graph_patch *q, double level, double *ope
     if (value - line - reach >= 0)
         return csg_graph_patch_area(q) *
                (value + (q->bend[CSG_GRAPH_XX] * x * x + q->bend[CSG_GRAPH_YY] * y * y) / 6);
-    part here = find_part(q, value), more = find_part(q, value + reach),
-         less = find_part(q, value - reach);
-    *open += fmax(more.line - 2 * here.line + less.line, 0) + third * more.area;
-    return here.bent;
+    const ramp here = ramp_of(q, value), more = ramp_of(q, value + reach),
+               less = ramp_of(q, value - reach);
+    double sum = line_of_part(&here);
+    *open +=
+        fmax(line_of_part(&more) - 2 * sum + line_of_part(&less), 0) + third * area_of_part(&more);
+    return sum + bend_of_part(q, value);
 }
 
 /* Where the surface may be in the cube, at most; and where it is for certain, at least: `beyond` is
@@ -352,8 +384,8 @@ double csg_graph_patch_above(const csg_graph_patch *q, double level, double *ope
 double csg_graph_patch_shown(const csg_graph_base *g, const csg_graph_patch *q, double beyond)
 {
     double up = g->half + beyond;
-    return fmax(csg_graph_patch_rule(q, q->z + up).area - csg_graph_patch_rule(q, q->z - up).area,
-                0);
+    const ramp above_bottom = ramp_of(q, q->z + up), above_top = ramp_of(q, q->z - up);
+    return fmax(area_of_part(&above_bottom) - area_of_part(&above_top), 0);
 }
 
 /* All of it is seen in the cube, up to `more`. */
@@ -377,29 +409,40 @@ static double reach_of(const csg_graph_patch *q)
  * the fourth derivatives, and by what the model is off. Where that is less than half of the
  * polynomial's own farthest root all over the cube, no root of the field is farther than half as
  * far again, and what the model is off there counts alone. Means over a square: |x|^4 is no more
- * than its largest square times the mean of |x|^2; that of |d|^4 is 0.6223 half^4. p = -(f_x, f_y)
- * / f_z is off by (1 + |p|) times what the field's gradient is, over f_z; as much as the surface's
- * place makes of the bends; and by the fourth derivatives. */
+ * than its largest square times the mean of |x|^2, |x|^6 and |x|^8 no more than that times the
+ * largest square once or twice more; those of |d|^4, |d|^6 and |d|^8 are 0.6223, 0.6858 and 0.8432
+ * times half^4 and so on. p = -(f_x, f_y) / f_z is off by (1 + |p|) times what the field's gradient
+ * is, over f_z; as much as the surface's place makes of the bends; and by the fourth derivatives.
+ */
 static csg_graph_room room_of(const csg_graph_base *g, const csg_graph_patch *q, const fall *f,
                               double off)
 {
     static const double MEAN = 0.6223, MOST = 4, MOST_CUBE = 2.8285;
+    static const double ROOT_SIXTH = 0.8282, ROOT_EIGHTH = 0.9183;
     const csg_taylor *of = g->f;
     csg_graph_room out;
-    double h = q->half[0], fourth = fourth_of(f), whole = fourth * h * h * h * h;
+    double h = q->half[0], cube = h * h * h, fourth = fourth_of(f), whole = fourth * cube * h;
     double far = fabs(q->z) + reach_of(q) + MOST * whole + off;
     double z = g->room < 0.5 * far * f->least ? fmin(1.5 * far, g->half) : g->half;
-    double most = z * z, mean = z * z + 2.0 / 3 * h * h, half = g->half;
+    double most = z * z, mean = z * z + 2.0 / 3 * h * h;
     for (int i = 0; i < 2; i++) {
         most += (fabs(q->at[i]) + h) * (fabs(q->at[i]) + h);
         mean += q->at[i] * q->at[i];
     }
+    double root = sqrt(most), root_mean = sqrt(mean);
     out.most = (of->error + of->quartic * most * most) / f->least + MOST * whole + off;
     out.mean = (of->error + of->quartic * most * mean) / f->least + MEAN * whole + off;
-    double turned = of->turned + of->thrice * sqrt(27) * half * half * half;
-    out.turned = f->least > turned ? turned / (f->least - turned) : INFINITY;
-    out.turned = 1.4143 * tangent_of(f) * (out.turned + f->bent * out.most / f->least) +
-                 MOST_CUBE * 4 * fourth * h * h * h;
+    double rms =
+        (of->error + of->quartic * most * root * root_mean) / f->least + ROOT_EIGHTH * whole + off;
+    double turned = of->turned + of->thrice * most * root;
+    double turned_rms = of->turned + of->thrice * most * root_mean, left = f->least - turned;
+    double place = f->bent / f->least, steep = 1.4143 * tangent_of(f);
+    out.turned = left > 0
+                     ? steep * (turned / left + place * out.most) + MOST_CUBE * 4 * fourth * cube
+                     : INFINITY;
+    out.turned_rms =
+        left > 0 ? steep * (turned_rms / left + place * rms) + ROOT_SIXTH * 4 * fourth * cube
+                 : INFINITY;
     return out;
 }
 

@@ -13,7 +13,7 @@
 
 enum {
     CSG_GRAPH_SIDE = 2,    /* first patches along a side of the face */
-    CSG_GRAPH_HALVED = 2,  /* times at most, one that is cut */
+    CSG_GRAPH_HALVED = 3,  /* times at most, one that is cut */
     CSG_GRAPH_CLIPPED = 5, /* corners of a rectangle that is clipped, at most */
     CSG_GRAPH_POINTS = 3 * (CSG_GRAPH_CLIPPED - 2)
 };
@@ -37,6 +37,7 @@ typedef struct csg_graph_patch {
 typedef struct csg_graph_room {
     double most, mean; /* along z */
     double turned;     /* its gradient over the face */
+    double turned_rms; /* root of the mean square of that; INFINITY: not known */
 } csg_graph_room;
 
 typedef struct csg_graph_base {
@@ -59,7 +60,6 @@ typedef enum csg_graph_columns {
 /* Points and weights by which functions of second order are integrated over a part of a patch. */
 typedef struct csg_graph_rule {
     double at[CSG_GRAPH_POINTS][2], weight[CSG_GRAPH_POINTS];
-    double area;
     int count;
 } csg_graph_rule;
 
