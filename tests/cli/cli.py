@@ -19,6 +19,12 @@ SCENES = os.environ["CSGMESH_SCENES"]
 SANITIZED = os.environ.get("CSGMESH_SANITIZED") == "1"
 optimised_only = unittest.skipIf(SANITIZED, "the optimised build has it")
 
+
+def rounds(count):
+    """Of a random search, as ROUNDS of tests/rounds.h: all, a quarter with sanitizers."""
+    return (count + 3) // 4 if SANITIZED else count
+
+
 # For csgmesh diff, whose 262 144 samples and rays by default take longer than small meshes' proven bounds, by which verdicts go.
 FEW_SAMPLES = ("--samples", "10000")
 

@@ -171,7 +171,6 @@ class Measure(unittest.TestCase):
                 self.assertEqual(len(caret) - 3, column)
         self.check("cube(2);", status=2, options=("--junit", os.path.join(self.folder, "r.xml")))
 
-    @cli.optimised_only
     TWISTED = "linear_extrude(height = 10, twist = 90) square(4, center = true);"  # 1e-4 takes more than two million cubes
 
     @cli.optimised_only  # with sanitizers measures of few cubes end at their number (tests/measure/test_measure.c)
