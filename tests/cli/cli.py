@@ -19,6 +19,15 @@ SCENES = os.environ["CSGMESH_SCENES"]
 SANITIZED = os.environ.get("CSGMESH_SANITIZED") == "1"
 optimised_only = unittest.skipIf(SANITIZED, "the optimised build has it")
 
+
+def rounds(count):
+    """Of a random search, as ROUNDS of tests/rounds.h: all, a quarter with sanitizers."""
+    return (count + 3) // 4 if SANITIZED else count
+
+
+# For csgmesh diff, whose 262 144 samples and rays by default take longer than small meshes' proven bounds, by which verdicts go.
+FEW_SAMPLES = ("--samples", "10000")
+
 BALL = "sphere(r = 1);\n"
 ENDLESS = "for (i = [0 : 99999]) for (j = [0 : 99999]) if (i < 0) sphere(i);\n"
 BLEND = """union(blend = 0.3) {

@@ -17,7 +17,8 @@ class DiffTest(cli.CliTest):
         os.unlink(self.path("scene.txt"))
 
     def diff(self, status, *arguments):
-        result = self.run_in("diff", *arguments)
+        samples = () if "--samples" in arguments else cli.FEW_SAMPLES
+        result = self.run_in("diff", *arguments, *samples)
         self.assert_clean(result)
         self.assert_status(result, status)
         return result

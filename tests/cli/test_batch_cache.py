@@ -145,7 +145,7 @@ class Broken(CacheTest):
                 file.seek(place)
                 file.write(bytes([byte ^ 1 << generator.randrange(8)]))
         for file in self.entries("whole"):
-            for _ in range(3):
+            for _ in range(cli.rounds(3)):
                 self.take_broken(change, file)
 
     def test_another_part(self):

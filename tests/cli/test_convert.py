@@ -29,10 +29,15 @@ def box_faces(low, high):
 
 
 class ConvertTest(cli.CliTest):
+    parts = None # parts.glb, made once for all tests
+
     def setUp(self):
         super().setUp()
         self.write("parts.txt", PARTS)
-        self.mesh("parts.txt", "-o", "parts.glb", "-r", "24")
+        if not ConvertTest.parts:
+            self.mesh("parts.txt", "-o", "parts.glb", "-r", "24")
+            ConvertTest.parts = self.read("parts.glb")
+        self.write("parts.glb", ConvertTest.parts)
 
     def mesh(self, *arguments):
         result = cli.run(*arguments, cwd=self.folder)
@@ -72,7 +77,7 @@ class Converting(ConvertTest):
                 ignored = ["--ignore", "normals"] + ([] if name in names else ["--ignore", "names"]) + \
                     ([] if name in colours else ["--ignore", "colors"])
                 tolerance = ["--tol", "0.01"] if name == "drc" else []
-                self.mesh("diff", "parts.glb", target, "-q", *ignored, *tolerance)
+                self.mesh("diff", *cli.FEW_SAMPLES, "parts.glb", target, "-q", *ignored, *tolerance)
 
     def test_materials_of_obj(self):
         """Looks of parts stand in a file beside it, and come back; a part of several colours has them at its vertices."""
@@ -84,7 +89,7 @@ part("knob") translate([40, 0, 0]) union(blend = 2) { color("lime") sphere(5); c
         self.assertIn(b"mtllib a.mtl\n", self.read("a.obj"))
         names = [line.split()[1] for line in self.read("a.mtl").decode().splitlines() if line.startswith("newmtl")]
         self.assertEqual(names, ["red", "rgb0080FF-alpha50.2", "gold-metal100-rough25", "painted"])
-        self.mesh("diff", "a.glb", "a.obj", "-q", "--ignore", "normals")
+        self.mesh("diff", *cli.FEW_SAMPLES, "a.glb", "a.obj", "-q", "--ignore", "normals")
         self.mesh("a.obj", "-o", "back.glb")
         self.assertEqual([m.get("pbrMetallicRoughness") for m in self.document("back.glb")["materials"]],
                          [m.get("pbrMetallicRoughness") for m in self.document("a.glb")["materials"]])
@@ -122,7 +127,7 @@ part("knob") translate([40, 0, 0]) union(blend = 2) { color("lime") sphere(5); c
         lines.insert(8, "v 5 -1 -1")
         self.write("shared.obj", "\n".join(lines) + "\n")
         self.mesh("shared.obj", "-o", "shared.glb")
-        self.mesh("diff", "shared.obj", "shared.glb", "-q", "--ignore", "normals")
+        self.mesh("diff", *cli.FEW_SAMPLES, "shared.obj", "shared.glb", "-q", "--ignore", "normals")
 
     def test_units(self):
         """Ours keep their numbers and their unit; those of others become millimetres."""
@@ -247,7 +252,7 @@ class Reshaping(ConvertTest):
     def test_flat_faces_stay_flat(self):
         """Shaded by angles alone, faces between roundings tilt by 8 degrees at their corners."""
         self.write("scene.txt", "cube([30, 20, 10], round = 1);")
-        self.assert_status(cli.run("scene.txt", "-q", "-r", "64", "-o", "in.glb", cwd=self.folder), 0)
+        self.assert_status(cli.run("scene.txt", "-q", "-r", "44", "-o", "in.glb", cwd=self.folder), 0)
         self.assert_status(cli.run("convert", "in.glb", "-q", "--simplify", "0.02", "-o", "out.obj", cwd=self.folder), 0)
         count, tilt = shading.tilt_of_large_faces(self.path("out.obj"), 15)
         self.assertGreater(count, 10)
@@ -260,7 +265,7 @@ class Reshaping(ConvertTest):
         self.assertLessEqual(one["distance"][1], 0.05)
         self.assertIn("(proven)", message)
         self.assertTrue(self.closed(one), one)
-        self.mesh("diff", "fine.glb", "b.glb", "--tol", "0.05", "--ignore", "normals", "-q")
+        self.mesh("diff", *cli.FEW_SAMPLES, "fine.glb", "b.glb", "--tol", "0.05", "--ignore", "normals", "-q")
 
     @cli.optimised_only
     def test_share_and_count(self):
@@ -280,7 +285,7 @@ class Reshaping(ConvertTest):
         document = self.read("b.glb")
         self.assertIn(b'"body"', document)
         self.assertIn(b'"lid"', document)
-        result = cli.run("diff", "parts.glb", "b.glb", "--tol", "2", cwd=self.folder)
+        result = cli.run("diff", *cli.FEW_SAMPLES, "parts.glb", "b.glb", "--tol", "2", cwd=self.folder)
         self.assertEqual(result.returncode, 0, result.stdout)
 
     def test_colours_that_jump_stay_where_they_jump(self):

@@ -115,16 +115,18 @@ class Ranks(cli.CliTest):
         """Without -r and -s, with what changes triangles after they are made, in parts and colours, for 1 to 7 ranks."""
         self.write("parts.txt", PARTS)
         self.write("blend.txt", cli.BLEND)
+        self.write("bore.txt", "difference() { cube(10); cylinder(h = 30, r = 3, center = true); }\n")
         cross = os.path.join(STRESS, "s3-cylinder-minus-cross.txt")
         mug = os.path.join(cli.SCENES, "parts", "mug.txt")
         draft = ("--quality", "draft")
-        for name, scene, extension, counts, *options in (("sharp", cross, "ply", RANKS), ("within", cross, "ply", (7,), "-e", 0.1),
-                                                         ("smooth", cross, "stl", (2,), "--features", "smooth", *draft),
-                                                         ("budget", cross, "glb", (4,), "--triangles", 1000),
+        for name, scene, extension, counts, *options in (("sharp", cross, "ply", (4,)), ("coarse", cross, "ply", (1, 2, 7), *draft),
+                                                         ("within", "bore.txt", "ply", (7,), "-e", 0.1),
+                                                         ("smooth", "bore.txt", "stl", (2,), "--features", "smooth", *draft),
+                                                         ("budget", "bore.txt", "glb", (4,), "--triangles", 200),
                                                          ("curved", mug, "ply", (4,), *draft),
-                                                         ("improved", cross, "obj", (2,), *draft, "--improve"),
-                                                         ("equal", cross, "ply", (3,), "-r", 40, "--simplify", 0.02),
-                                                         ("threads", cross, "ply", (3,), "-j", 2, *draft),
+                                                         ("improved", "bore.txt", "obj", (2,), *draft, "--improve"),
+                                                         ("equal", "bore.txt", "ply", (3,), "-r", 40, "--simplify", 0.02),
+                                                         ("threads", "bore.txt", "ply", (3,), "-j", 2, *draft),
                                                          ("parts", "parts.txt", "glb", (4,), *draft),
                                                          ("colours", "blend.txt", "ply", (3,), *draft)):
             self.compare(name, scene, extension, counts, *map(str, options))

@@ -9,6 +9,7 @@
 
 #include "field/field_support.h"
 #include "field/kernels/functions.h"
+#include "rounds.h"
 #include "scene/formula/formula.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/random_formula.h"
@@ -301,7 +302,7 @@ static void test_formulas(void **state)
     const csg_kernel *kernels[8];
     size_t kernel_count = test_kernels(kernels), values = 0, gradients = 0, tight = 0;
     csg_random random = {24};
-    for (int turn = 0; turn < 240; turn++) {
+    for (int turn = 0; turn < ROUNDS(240); turn++) {
         test_subject subject;
         test_subject_begin(&subject);
         test_subject_compile(&subject, random_scene(&subject, &random, turn));
@@ -322,8 +323,8 @@ static void test_formulas(void **state)
         }
         test_subject_end(&subject);
     }
-    assert_true(values > 40000 && gradients > 15000);
-    assert_true(tight > 1000);
+    assert_true(values > ROUNDS(40000) && gradients > ROUNDS(15000));
+    assert_true(tight > ROUNDS(1000));
 }
 
 /* A formula that does not look at the point is the same everywhere. */

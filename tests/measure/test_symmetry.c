@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "field/tape.h"
 #include "measure/symmetry.h"
+#include "rounds.h"
 
 static csg_symmetries symmetries_of(const solid *s)
 {
@@ -262,7 +263,7 @@ static void test_orbits(void **state)
 {
     static const double AT[3] = {2, -4.5, 7}, R = 1, VOLUME = 4.1887902047863905;
     csg_random random = {78};
-    for (int n = 0; n < 150; n++) {
+    for (int n = 0; n < ROUNDS(150); n++) {
         const csg_symmetry g = random_map(&random);
         csg_symmetry power = g;
         double at[3], middle[3] = {0}, moments[3][3] = {{0}};

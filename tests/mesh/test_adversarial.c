@@ -21,6 +21,7 @@
 #include "base/random.h"
 #include "csgmesh/csgmesh.h"
 #include "mesh/self_intersections.h"
+#include "rounds.h"
 
 enum { MOST_SCENES = 64, MOST_TEXT = 4096, MOST_NAME = 128 };
 
@@ -176,6 +177,12 @@ static void read_scene(const char *name, char text[MOST_TEXT])
     text[length] = 0;
 }
 
+/* Fourteen cubes in place of the two of cubes_at_an_edge: a third of all the time. */
+static bool only_has_more(const char *name)
+{
+    return ROUNDS(4) < 4 && !strcmp(name, "touching_cubes.txt");
+}
+
 static void check_poses(const char *name, uint64_t seed)
 {
     char text[MOST_TEXT], turned[MOST_TEXT + 256], what[MOST_NAME + 64];
@@ -184,7 +191,8 @@ static void check_poses(const char *name, uint64_t seed)
     read_scene(name, text);
     bool is_fixed = own_lattice(text, &options);
     check_scene(text, options, name);
-    check_thinned(text, name);
+    if (!only_has_more(name))
+        check_thinned(text, name);
     for (unsigned i = 0; i < rotation_count && !is_fixed; i++) {
         double a[3];
         for (int k = 0; k < 3; k++)

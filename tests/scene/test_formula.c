@@ -4,6 +4,7 @@
  */
 #include <string.h>
 
+#include "rounds.h"
 #include "scene/formula/formula.h"
 #include "scene/random_formula.h"
 #include "scene/scene_support.h"
@@ -165,7 +166,7 @@ static void test_lipschitz_holds(void **state)
     csg_box box = {{-2, -1.5, -1}, {1, 1.5, 2}};
     size_t finite = 0;
     double used = 0; /* of the constants, on average */
-    for (int turn = 0; turn < 300; turn++) {
+    for (int turn = 0; turn < ROUNDS(300); turn++) {
         uint32_t count =
             test_random_formula(&context.memory, &random, 1 + (unsigned)turn % 16, true, steps);
         double lambda = csg_formula_lipschitz(&context.memory, steps, count, box);
@@ -184,7 +185,7 @@ static void test_lipschitz_holds(void **state)
         finite += isfinite(lambda);
         used += isfinite(lambda) && lambda > 0 ? steepest / lambda : 0;
     }
-    assert_true(finite > 290);
+    assert_true(finite > ROUNDS(290));
     assert_true(used / (double)finite > 0.4);
     test_context_end(&context);
 }
@@ -314,7 +315,7 @@ static void test_stated_constants_of_random(void **state)
     static csg_formula_step steps[TEST_MOST_STEPS];
     csg_box box = {{-2, -1.5, -1}, {1, 1.5, 2}};
     size_t verdicts[3] = {0};
-    for (int turn = 0; turn < 100; turn++) {
+    for (int turn = 0; turn < ROUNDS(100); turn++) {
         uint32_t count =
             test_random_formula(&context.memory, &random, 1 + (unsigned)turn % 16, true, steps);
         double lambda = csg_formula_lipschitz(&context.memory, steps, count, box), steepest = 0;
@@ -341,7 +342,7 @@ static void test_stated_constants_of_random(void **state)
     }
     print_message("undecided %zu, proven %zu, refuted %zu\n", verdicts[0], verdicts[1],
                   verdicts[2]);
-    assert_true(verdicts[CSG_SLOPE_REFUTED] > 40);
+    assert_true(verdicts[CSG_SLOPE_REFUTED] > ROUNDS(40));
     test_context_end(&context);
 }
 
