@@ -207,6 +207,8 @@ static inline bool csg_frustum_gradients(csg_cone_leaf *l)
         done = done && csg_cone_add_face(l, 0, 0, 1, (double)own[6] - bottom);
         faces++;
     }
+    if (faces == 1 && side + reach >= from && turn < 1.4)
+        l->bend = nx / (radius - l->rho);
     l->balls->has_edges |= faces > 1 && own[6] == 0;
     return done;
 }
