@@ -252,7 +252,7 @@ class Reshaping(ConvertTest):
     def test_flat_faces_stay_flat(self):
         """Shaded by angles alone, faces between roundings tilt by 8 degrees at their corners."""
         self.write("scene.txt", "cube([30, 20, 10], round = 1);")
-        self.assert_status(cli.run("scene.txt", "-q", "-r", "44", "-o", "in.glb", cwd=self.folder), 0)
+        self.assert_status(cli.run("scene.txt", "-q", "-r", "64", "-o", "in.glb", cwd=self.folder), 0)
         self.assert_status(cli.run("convert", "in.glb", "-q", "--simplify", "0.02", "-o", "out.obj", cwd=self.folder), 0)
         count, tilt = shading.tilt_of_large_faces(self.path("out.obj"), 15)
         self.assertGreater(count, 10)
