@@ -110,23 +110,37 @@ static void check_gradients(const csgm_scene *scene, csg_random *random, csg_vec
     }
 }
 
-/* How fast they turn, between two places of the region, near to each other and far. Returns whether
- * it was known that they do not jump. */
-static bool check_bend(const csgm_scene *scene, csg_random *random, csg_vec3 at,
-                       const csg_gradients_region *region, const csg_gradients *found)
+/* How far values over the region's triangle, or over a smaller one moved within the region, are
+ * from what the corners say. Returns whether it was known to fall with the square of the size. */
+static bool check_sag(const csgm_scene *scene, csg_random *random, csg_vec3 at,
+                      const csg_gradients_region *region, const csg_gradients *found)
 {
-    for (int i = 0; i < TRIES && found->jump < INFINITY; i++) {
-        csg_vec3 p = csg_vec3_add(at, place_in(region, random, 1));
-        csg_vec3 off = csg_vec3_sub(csg_vec3_add(at, place_in(region, random, 1)), p);
-        off = csg_vec3_scale(off, exp(csg_random_uniform(random, -3, 0)));
-        csg_vec3 g = test_sample(scene, p).gradient;
-        csg_vec3 other = test_sample(scene, csg_vec3_add(p, off)).gradient;
-        double turn = csg_vec3_norm(csg_vec3_sub(g, other)), way = csg_vec3_norm(off);
-        if (turn > found->jump + found->bend * way + 1e-5)
-            fail_msg("a turn of %g, not %g + %g, over %g, near (%g, %g, %g)", turn, found->jump,
-                     found->bend * way, way, at.x, at.y, at.z);
+    for (int i = 0; i < TRIES && found->kink < INFINITY; i++) {
+        double n = exp(csg_random_uniform(random, 0, 3)), share = i % 2 ? 1 / n : -1 / n;
+        double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
+        const double weight[3] = {s, t, 1 - s - t};
+        csg_vec3 from = {0, 0, 0}, v[3], x = {0, 0, 0};
+        csg_vec3 moved = csg_vec3_scale(test_direction(random), 0.99 * region->around);
+        double said = 0;
+        /* around a place from which the small triangle is within the whole one */
+        for (int k = 0; k < 3; k++)
+            from = csg_vec3_add(from, csg_vec3_scale(region->triangle[k], 1.0 / 3));
+        from = csg_vec3_add(from, csg_vec3_sub(at, region->c));
+        for (int k = 0; k < 3; k++) {
+            csg_vec3 corner = csg_vec3_add(region->triangle[k], csg_vec3_sub(at, region->c));
+            csg_vec3 off =
+                csg_vec3_scale(csg_vec3_sub(corner, from), share < 0 ? 0.5 * share : share);
+            v[k] = csg_vec3_add(csg_vec3_add(from, off), moved);
+            x = csg_vec3_add(x, csg_vec3_scale(v[k], weight[k]));
+            said += weight[k] * test_sample(scene, v[k]).value;
+        }
+        double size = share < 0 ? -0.5 * share : share;
+        double off = fabs(test_sample(scene, x).value - said);
+        if (off > found->kink * size + found->sag * size * size + 1e-6)
+            fail_msg("a value is %g off, not %g + %g, near (%g, %g, %g)", off, found->kink * size,
+                     found->sag * size * size, at.x, at.y, at.z);
     }
-    return found->jump == 0;
+    return found->kink == 0;
 }
 
 /* What mesh/distance/steps.h says of the region's triangle, tried at random points of it. Returns
@@ -147,8 +161,8 @@ static bool try_steps(const csgm_scene *scene, const csgm_field *field, csg_rand
     csg_steps piece = {.at = {v[0], v[1], v[2]},
                        .step = csg_vec3_scale(axis, region->around),
                        .stray = found->across * radius,
-                       .jump = found->jump * radius,
-                       .bend = 0.5 * found->bend * radius * radius};
+                       .kink = found->kink,
+                       .sag = found->sag};
     csg_steps_settle(csg_kernel_for(CSGM_ISA_AUTO), &field->tape, 0, scratch, floats, &piece, 1);
     for (int i = 0; !piece.fails && i < TRIES; i++) {
         double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
@@ -221,7 +235,7 @@ static bool try_range(const csgm_scene *scene, const csgm_field *field, csg_rand
     if (is_known) {
         check_gradients(scene, random, at, &region, &found);
         check_differences(scene, random, at, &region, &found);
-        smooth_count += check_bend(scene, random, at, &region, &found);
+        smooth_count += check_sag(scene, random, at, &region, &found);
         step_count += try_steps(scene, field, random, &region, &found, scratch, floats);
     }
     free(scratch);

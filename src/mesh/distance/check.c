@@ -163,8 +163,8 @@ static verdict settle_by_cone(const proof *p, const settler *s, const piece *one
         .at = {one->at[0], one->at[1], one->at[2]},
         .step = csg_vec3_scale(has_axis ? axis : one->normal, has_axis ? p->error : -p->error),
         .stray = g->across * r,
-        .jump = g->jump * r,
-        .bend = 0.5 * g->bend * r * r};
+        .kink = g->kink,
+        .sag = g->sag};
     *asks = may_settle_by_steps(p, steps, longest);
     return OPEN;
 }
@@ -193,7 +193,7 @@ static verdict settle_otherwise(const proof *p, settler *s, const piece *one, co
     csg_steps inward = {.at = {one->at[0], one->at[1], one->at[2]},
                         .step = csg_vec3_scale(one->normal, -p->error),
                         .stray = steepest * l->d.radius,
-                        .jump = INFINITY,
+                        .kink = INFINITY,
                         .fails = true};
     if ((!l->is_known || l->gradients.stray > 0.5 * steepest) &&
         may_settle_by_steps(p, &inward, steepest))

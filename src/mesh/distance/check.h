@@ -7,11 +7,11 @@
  *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so c + E v is
  *            inside and c - E v outside, for all of its points
  *   steps    f > 0 at the corners of small triangles that the piece, moved by E v, is cut into, by
- *            more than what gradients that stray, or turn, let values between them be off by
- *            (slopes.h); and f < 0 for the piece moved by -E v (steps.h). v is a cone's axis, or
- * the piece's normal if there is no cone; where no bound is known gradients stray from 0 by lambda.
- * Values cost little beside gradients' bounds, so pieces of the order of sqrt(E / curvature) are
- * settled at once nearby   f changes its sign within E - r of c
+ *            more than values between them can be off by (slopes.h); and f < 0 for the piece moved
+ *            by -E v (steps.h). v is a cone's axis, or the piece's normal if there is no cone; if
+ *            no bound is known gradients stray from 0 by lambda. Values cost little beside
+ *            gradients' bounds, so pieces of the order of sqrt(E / curvature) are settled at once
+ *   nearby   f changes its sign within E - r of c
  *
  * Meshes that began with triangles of polyhedra are held against those (begun.h).
  *

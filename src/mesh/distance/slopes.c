@@ -22,18 +22,6 @@ enum { CORNERS = 3 /* of a triangle */ };
 /* ---- differences and shares --------------------------------------------------------------------
  */
 
-/* Whether gradients need not be in the hull of the balls. */
-static bool exceeds_hull(const operand *o)
-{
-    return o->stretched || o->faces || o->balls.has_edges;
-}
-
-static double apart(const csg_cone_ball *a, const csg_cone_ball *b)
-{
-    const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
-    return csg_norm3(d) + a->spread + b->spread;
-}
-
 /* How much a field can change from c within the region whose gradients are in a ball of vectors. */
 static double span_of(const walker *w, const double at[3], double spread)
 {
@@ -58,8 +46,8 @@ double csg_slopes_change(const walker *w, const operand *a, const operand *b)
         for (uint32_t k = 0; k < b->balls.count; k++) {
             const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
             const double d[3] = {p->at[0] - q->at[0], p->at[1] - q->at[1], p->at[2] - q->at[2]};
-            most =
-                fmax(most, faces ? apart(p, q) * w->radius : span_of(w, d, p->spread + q->spread));
+            most = fmax(most, faces ? csg_slopes_balls_apart(p, q) * w->radius
+                                    : span_of(w, d, p->spread + q->spread));
         }
     return faces ? 1.41421357 * most : most;
 }
@@ -67,7 +55,7 @@ double csg_slopes_change(const walker *w, const operand *a, const operand *b)
 double csg_slopes_change_of_sum(const walker *w, const operand *a, const operand *b)
 {
     double most = 0;
-    if (exceeds_hull(a) || exceeds_hull(b))
+    if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
         return (a->longest + b->longest) * w->radius;
     for (uint32_t i = 0; i < a->balls.count; i++)
         for (uint32_t k = 0; k < b->balls.count; k++) {
@@ -75,17 +63,6 @@ double csg_slopes_change_of_sum(const walker *w, const operand *a, const operand
             const double sum[3] = {p->at[0] + q->at[0], p->at[1] + q->at[1], p->at[2] + q->at[2]};
             most = fmax(most, span_of(w, sum, p->spread + q->spread));
         }
-    return most;
-}
-
-double csg_slopes_apart(const operand *a, const operand *b)
-{
-    double most = 0;
-    if (exceeds_hull(a) || exceeds_hull(b))
-        return a->longest + b->longest;
-    for (uint32_t i = 0; i < a->balls.count; i++)
-        for (uint32_t k = 0; k < b->balls.count; k++)
-            most = fmax(most, apart(&a->balls.items[i], &b->balls.items[k]));
     return most;
 }
 
@@ -204,8 +181,8 @@ bool csg_slopes_mix(operand *a, const operand *b, range share, bool is_sharp)
         a->longest = b->longest;
         a->stretched = b->stretched;
         a->faces = b->faces;
-        a->jump = b->jump;
-        a->bend = b->bend;
+        a->kink = b->kink;
+        a->sag = b->sag;
         return true;
     }
     operand before = *a;
@@ -220,7 +197,7 @@ bool csg_slopes_mix(operand *a, const operand *b, range share, bool is_sharp)
     a->longest = fmax(a->longest, b->longest);
     a->stretched |= b->stretched;
     a->faces |= b->faces;
-    a->jump = INFINITY;
+    a->kink = INFINITY;
     return true;
 }
 
@@ -303,6 +280,9 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         return done;
     }
     range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
+    bool mixes = r.low < 1 && r.high > 0;
+    double kink = mixes ? fmax(a->kink, b->kink) + 0.25 * csg_slopes_parting(w, a, b) : 0;
+    double sag = fmax(a->sag, b->sag);
     double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);
     double least = turn * least_of_larger(w, a, b, turn);
     a->least = turn * joined_value(node, n, chi, turn * a->least, turn * b->least);
@@ -315,7 +295,12 @@ static bool join_operands(walker *w, const csg_tape_node *node)
     a->value = value;
     a->low = turn * joined_value(node, n, chi, turn * a->low, turn * b->low) - a->doubt;
     a->high = turn * joined_value(node, n, chi, turn * a->high, turn * b->high) + a->doubt;
-    return csg_slopes_mix(a, b, r, node->join_blend == CSG_BLEND_SHARP);
+    bool done = csg_slopes_mix(a, b, r, node->join_blend == CSG_BLEND_SHARP);
+    if (mixes) {
+        a->kink = kink;
+        a->sag = sag;
+    }
+    return done;
 }
 
 double csg_slopes_value(const operand *o, which w)
@@ -397,16 +382,21 @@ static double tangent_value(const walker *w, const csg_tape_node *node, const op
 static void find_range(const walker *w, const csg_tape_node *node, operand *leaf)
 {
     const csg_cone_ball *balls = leaf->balls.items;
-    double stray = 0;
+    double stray = 0, bend = leaf->balls.bend * w->flat;
     double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
     double a = leaf_value(w, node, 0), b = leaf_value(w, node, 1), c = leaf_value(w, node, 2);
     leaf->low = fmin(a, fmin(b, c)) - slack;
     leaf->high = fmax(a, fmax(b, c)) + slack;
     for (uint32_t i = 0; i < leaf->balls.count; i++)
-        stray = fmax(stray, i ? 2 * apart(&balls[0], &balls[i]) : balls[0].spread);
+        stray = fmax(stray, i ? 2 * csg_slopes_balls_apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
         stray = 2 * fmax(csg_norm3(balls[0].at), leaf->balls.corner);
-    stray = fmin(stray, leaf->jump + 0.5 * leaf->bend * w->flat);
+    /* in the end they turn by no more than they stray, however fast */
+    bool is_slow = bend < 2 * leaf->balls.items[0].spread;
+    leaf->kink = is_slow ? 0 : csg_slopes_apart(leaf, leaf) * w->flat;
+    leaf->sag = is_slow ? 0.5 * bend * w->flat : 0;
+    if (is_slow)
+        stray = 0.5 * bend;
     if (!is_concave(node)) {
         leaf->low -= stray * w->flat;
         leaf->high += stray * w->flat;
@@ -439,7 +429,8 @@ static void join_faces(operand *leaf)
     static const double NARROW = 0.35; /* of the longest gradient */
     csg_cone_ball one;
     for (uint32_t i = 1; i < leaf->balls.count; i++) /* no such ball holds both: most turn more */
-        if (apart(&leaf->balls.items[0], &leaf->balls.items[i]) > 2.01 * NARROW * leaf->longest)
+        if (csg_slopes_balls_apart(&leaf->balls.items[0], &leaf->balls.items[i]) >
+            2.01 * NARROW * leaf->longest)
             return;
     if (!csg_slopes_enclose(&leaf->balls, leaf->longest, &one) ||
         !(one.spread <= NARROW * leaf->longest))
@@ -460,14 +451,6 @@ double csg_slopes_span(const walker *w, const operand *leaf)
     for (uint32_t i = 0; i < leaf->balls.count; i++)
         most = fmax(most, span_of(w, leaf->balls.items[i].at, leaf->balls.items[i].spread));
     return most;
-}
-
-/* In the end they stray by no more than that, however fast. */
-static void find_bend(const walker *w, operand *leaf)
-{
-    bool is_slow = leaf->balls.bend * w->radius < 2 * leaf->balls.items[0].spread;
-    leaf->jump = is_slow ? 0 : csg_slopes_apart(leaf, leaf);
-    leaf->bend = is_slow ? leaf->balls.bend : 0;
 }
 
 static bool push_leaf(walker *w, const csg_tape_node *node)
@@ -492,7 +475,6 @@ static bool push_leaf(walker *w, const csg_tape_node *node)
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
-    find_bend(w, leaf);
     find_range(w, node, leaf);
     double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;
@@ -530,7 +512,7 @@ static void find_stray(const walker *w, const operand *root, csg_gradients *out)
     const csg_cone_balls *balls = &root->balls;
     csg_cone_ball middle = {.at = {0, 0, 0}};
     out->stray = out->across = INFINITY;
-    if (balls->count && exceeds_hull(root)) {
+    if (balls->count && csg_slopes_exceed_hull(root)) {
         out->is_axis_known = true;
         out->has_axis = csg_cone_find_axis(balls, &out->cone);
         if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
@@ -558,7 +540,7 @@ static double find_longest(const operand *root)
 {
     const csg_cone_balls *balls = &root->balls;
     double most = 0;
-    if (exceeds_hull(root))
+    if (csg_slopes_exceed_hull(root))
         return root->longest;
     for (uint32_t i = 0; i < balls->count; i++)
         most = fmax(most, csg_norm3(balls->items[i].at) + balls->items[i].spread);
@@ -572,13 +554,13 @@ static bool take_result(const walker *w, csg_gradients *out)
     out->balls = root->balls;
     out->value = root->value;
     out->longest = find_longest(root);
-    out->exceeds = exceeds_hull(root);
+    out->exceeds = csg_slopes_exceed_hull(root);
     out->low = root->low;
     out->high = root->high;
     out->least = root->least;
     out->most = root->most;
-    out->jump = root->jump;
-    out->bend = root->bend;
+    out->kink = root->kink;
+    out->sag = root->sag;
     out->is_axis_known = false;
     find_stray(w, root, out);
     out->doubt = root->doubt;

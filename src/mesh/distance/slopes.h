@@ -7,11 +7,15 @@
  * Leaves are asked in a ball around the region; how far operands part from each other in it is told
  * by its extent along their gradients' difference, which along a straight fillet is none.
  *
- * And how fast they turn, but for jumps: a blend's shares by no more than its operands part from
- * each other, over its width. Where gradients stray by jump + bend d over a distance of d, values
- * between the corners of a triangle within r of a point are within jump r + bend r^2 / 2 of those
- * that these say: the sum of l_i (f(v_i) - f(x) - g(x) (v_i - x)), where x = sum l_i v_i and the
- * sum of l_i |v_i - x|^2 is at most r^2.
+ * And how far values at a place x = sum l_i v_i of a triangle may be from sum l_i f(v_i), which its
+ * corners say. Of a leaf whose gradients differ by at most jump + bend d over a distance of d that
+ * is jump r + bend r^2 / 2, r being how far corners are from some point: it is the sum of
+ * l_i (f(v_i) - f(x) - g(x) (v_i - x)), and that of l_i |v_i - x|^2 is at most r^2. An operator
+ * whose shares add up to 1 hands on the most of its operands', and adds what it is not linear by:
+ * with h the difference of two operands, which varies over the corners by no more than their
+ * gradients' difference along the triangle lets it, half of its second derivative times the square
+ * of half of that, or half of that where shares jump: they are between 0 and 1. Triangles that are
+ * n times smaller, along the same sides, are off by kink / n + sag / n^2.
  *
  * And the field's range over a triangle in the region: that of a leaf from its values at the
  * corners and how far its gradients stray, of convex primitives by their tangent planes, then
@@ -44,11 +48,11 @@ typedef struct csg_gradients {
     double low, high;   /* over the triangle */
     double least, most; /* over the region, but for rounding: nowhere less, nowhere more */
     double longest;     /* of all gradients */
-    bool exceeds;  /* they may be combinations of the balls with weights of more than 1 in all */
-    double stray;  /* no gradient is farther from `middle`; INFINITY: not known */
-    double across; /* the same, of their parts along the triangle */
-    double jump, bend; /* no two of them differ by more than jump + bend times the distance between
-                          their points; jump is INFINITY where that is not known */
+    bool exceeds;     /* they may be combinations of the balls with weights of more than 1 in all */
+    double stray;     /* no gradient is farther from `middle`; INFINITY: not known */
+    double across;    /* the same, of their parts along the triangle */
+    double kink, sag; /* how far values over the triangle, or over it moved within the region, may
+                         be from what its corners say; kink is INFINITY where that is not known */
     double middle[3];
     double doubt;                 /* rounding of the field's values */
     csg_cone cone;                /* the axis of `balls`, if it was looked for on the way */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * One ball around all gradients that have an axis in common; see slopes.h.
+ * One ball around all gradients that have an axis in common, and how far those of two operands are
+ * from each other; see slopes.h.
  */
 #include <math.h>
 
@@ -39,4 +40,32 @@ bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ba
     csg_cone cone;
     return csg_cone_find_axis(balls, &cone) &&
            csg_slopes_enclose_around(balls, &cone, longest, out);
+}
+
+double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                          const csg_slopes_operand *b)
+{
+    const csg_vec3 *v = w->region.triangle;
+    bool is_one = a->balls.count == 1 && b->balls.count == 1 && !csg_slopes_exceed_hull(a) &&
+                  !csg_slopes_exceed_hull(b);
+    const csg_cone_ball *p = &a->balls.items[0], *q = &b->balls.items[0];
+    const csg_vec3 d = {p->at[0] - q->at[0], p->at[1] - q->at[1], p->at[2] - q->at[2]};
+    double apart = is_one ? p->spread + q->spread : csg_slopes_apart(a, b), most = 0;
+    for (int i = 0; i < 3; i++) {
+        csg_vec3 side = csg_vec3_sub(v[(i + 1) % 3], v[i]);
+        double along = is_one ? fabs(csg_vec3_dot(d, side)) : 0;
+        most = fmax(most, along + apart * csg_vec3_norm(side));
+    }
+    return most;
+}
+
+double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b)
+{
+    double most = 0;
+    if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
+        return a->longest + b->longest;
+    for (uint32_t i = 0; i < a->balls.count; i++)
+        for (uint32_t k = 0; k < b->balls.count; k++)
+            most = fmax(most, csg_slopes_balls_apart(&a->balls.items[i], &b->balls.items[k]));
+    return most;
 }

@@ -12,11 +12,11 @@ typedef struct csg_slopes_operand {
     double low, high;    /* over the triangle */
     double least, most;  /* over the region, but for rounding */
     csg_cone_balls balls;
-    double jump, bend; /* as in csg_gradients */
-    double longest;    /* gradient */
-    bool stretched;    /* shares may add up to more than 1, or corners' gradients are longer than
-                          faces' */
-    bool faces;        /* gradients between the balls may be as long as these: where faces meet */
+    double kink, sag; /* as in csg_gradients */
+    double longest;   /* gradient */
+    bool stretched;   /* shares may add up to more than 1, or corners' gradients are longer than
+                         faces' */
+    bool faces;       /* gradients between the balls may be as long as these: where faces meet */
 } csg_slopes_operand;
 
 typedef struct csg_slopes_walker {
@@ -79,8 +79,22 @@ bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis
                                csg_cone_ball *out);
 /* The same of any; false also where they have no axis in common. */
 bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
+/* Whether gradients need not be in the hull of the balls. */
+static inline bool csg_slopes_exceed_hull(const csg_slopes_operand *o)
+{
+    return o->stretched || o->faces || o->balls.has_edges;
+}
+static inline double csg_slopes_balls_apart(const csg_cone_ball *a, const csg_cone_ball *b)
+{
+    const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
+    return csg_norm3(d) + a->spread + b->spread;
+}
+
 /* How far gradients of two operands, or of one, can be from each other. */
 double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b);
+/* How far apart the differences of two operands can be at any two corners of the triangle. */
+double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                          const csg_slopes_operand *b);
 /* How much an operand can change from c within the region. */
 double csg_slopes_span(const csg_slopes_walker *w, const csg_slopes_operand *o);
 /* The value at c of what a node is the root of. */

@@ -62,38 +62,31 @@ static bool mix_round(const operand *of, const range *weights, uint32_t count, o
     return total.high > 0;
 }
 
-/* How fast the shares change on the way from one place to another. A share is u_i / S with
- * u_i = (f_i - F + w)_+, S the sum of all and w^2 that of their squares: so it moves the gradient
- * by the sum of (g_i - g) (v_i - v) / S over those that are active, v_i by how much f_i changes and
- * g, v the means in these shares. No two g_i and no two v_i are farther apart than `turn`, per
- * length; of two operands the sum is w^2 / S^3 times one product of these, and S is w at least. */
-static double shares_bend(const range *weights, uint32_t count, uint32_t active, double turn,
-                          double w)
+/* F is convex in its operands. Its second derivative along a change v of theirs is the sum of
+ * (v_i - v)^2 / S over those that are active, v being the mean in their shares and S the sum of
+ * their weights, which is w at least: no more than the sum of (v_i - v_k)^2 / S over all pairs, and
+ * of two w^2 / S^3 times that of one. */
+static void find_sag(const walker *w, const operand *of, const range *weights, uint32_t count,
+                     double size, operand *sum)
 {
-    double sum = 0;
-    for (uint32_t i = 0; i < count; i++)
-        sum += weights[i].low;
-    sum = fmax(sum, w);
-    return turn * turn * (active == 2 ? w * w / (sum * sum * sum) : (active - 1) / sum);
-}
-
-static void find_bend(const operand *of, const range *weights, uint32_t count, double w,
-                      operand *sum)
-{
-    double jump = 0, bend = 0, turn = 0;
+    double kink = 0, sag = 0, squares = 0, total = 0;
     uint32_t active = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (weights[i].high <= 0)
             continue;
         active++;
-        jump = fmax(jump, of[i].jump);
-        bend = fmax(bend, of[i].bend);
-        for (uint32_t k = 0; k < i; k++)
-            if (weights[k].high > 0)
-                turn = fmax(turn, csg_slopes_apart(&of[i], &of[k]));
+        total += weights[i].low;
+        kink = fmax(kink, of[i].kink);
+        sag = fmax(sag, of[i].sag);
+        for (uint32_t k = 0; k < i; k++) {
+            double parting = weights[k].high > 0 ? csg_slopes_parting(w, &of[i], &of[k]) : 0;
+            squares += 0.25 * parting * parting;
+        }
     }
-    sum->jump = jump;
-    sum->bend = bend + shares_bend(weights, count, active, turn, w);
+    total = fmax(total, size);
+    double bend = active > 2 ? 1 / total : size * size / (total * total * total);
+    sum->kink = kink;
+    sum->sag = sag + 0.5 * bend * squares;
 }
 
 /* Where two operands face each other, as a wall's sides do, their sum hardly changes, and that of
@@ -175,7 +168,7 @@ bool csg_slopes_join_round(walker *w, const csg_tape_node *node)
     if (node == &w->tape->nodes[w->tape->count - 1])
         find_level(w, of, weights, node->arity, turn, size);
     if (done)
-        find_bend(of, weights, node->arity, size, &sum);
+        find_sag(w, of, weights, node->arity, size, &sum);
     w->top -= node->arity - 1;
     if (!done)
         return false;

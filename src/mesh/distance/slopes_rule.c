@@ -53,7 +53,7 @@ bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node)
             add_combination(&a->balls, &from.items[i], &b->balls.items[j], share);
             add_combination(&a->balls, &from.items[i], &b->balls.items[j], 1 - share);
         }
-    a->jump = INFINITY;
+    a->kink = INFINITY;
     a->longest = k * fmax(a->longest, b->longest);
     a->doubt = k * fmax(a->doubt, b->doubt) + ROUNDING * (double)own[CSG_SMOOTH_DELTA];
     w->top--;

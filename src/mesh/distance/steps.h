@@ -16,15 +16,15 @@ enum { CSG_STEPS_MOST_CUTS = 16 /* of a side: gradients may stray so much more t
 typedef struct csg_steps {
     csg_vec3 at[3], step; /* inwards */
     double stray;         /* gradients' over the piece, times its radius */
-    double jump, bend; /* the same of csg_gradients' bounds, times its radius and half its square */
-    double excess;     /* out, where it fails: by what factor they stray too much, or INFINITY */
-    bool fails;        /* out */
+    double kink, sag;     /* csg_gradients' */
+    double excess;        /* out, where it fails: by what factor they stray too much, or INFINITY */
+    bool fails;           /* out */
 } csg_steps;
 
 /* What a value between the corners can be off by, of a piece whose sides are cut so often. */
 static inline double csg_steps_off(const csg_steps *piece, double cuts)
 {
-    double off = piece->jump / cuts + piece->bend / (cuts * cuts);
+    double off = piece->kink / cuts + piece->sag / (cuts * cuts);
     return off < piece->stray / cuts ? off : piece->stray / cuts;
 }
 
