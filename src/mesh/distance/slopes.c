@@ -280,7 +280,8 @@ static bool join_operands(walker *w, const csg_tape_node *node)
         return done;
     }
     range r = shares_of(node->join_blend, n, chi, d - reach, d + reach);
-    bool mixes = r.low < 1 && r.high > 0;
+    /* of a sharp one little can be settled by that, and asking costs more */
+    bool mixes = r.low < 1 && r.high > 0 && node->join_blend != CSG_BLEND_SHARP;
     double kink = mixes ? fmax(a->kink, b->kink) + 0.25 * csg_slopes_parting(w, a, b) : 0;
     double sag = fmax(a->sag, b->sag);
     double value = turn * joined_value(node, n, chi, turn * a->value, turn * b->value);

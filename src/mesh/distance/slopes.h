@@ -14,8 +14,8 @@
  * whose shares add up to 1 hands on the most of its operands', and adds what it is not linear by:
  * with h the difference of two operands, which varies over the corners by no more than their
  * gradients' difference along the triangle lets it, half of its second derivative times the square
- * of half of that, or half of that where shares jump: they are between 0 and 1. Triangles that are
- * n times smaller, along the same sides, are off by kink / n + sag / n^2.
+ * of half of that, or a quarter of that where only shares between 0 and 1 are known. Triangles that
+ * are n times smaller, along the same sides, are off by kink / n + sag / n^2.
  *
  * And the field's range over a triangle in the region: that of a leaf from its values at the
  * corners and how far its gradients stray, of convex primitives by their tangent planes, then
