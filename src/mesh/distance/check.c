@@ -31,13 +31,13 @@ typedef struct settler {
     csg_arena arena;
     csg_tape tape; /* of the piece at hand */
     float *scratch;
-    uint64_t pieces, by_cone, effort;
+    uint64_t pieces, effort;
     uint64_t most; /* pieces, with those of the one at hand */
 } settler;
 
 /* What eight pieces took, with their parts. */
 typedef struct group_work {
-    uint64_t pieces, by_cone, effort;
+    uint64_t pieces, effort;
 } group_work;
 
 typedef struct proof {
@@ -148,7 +148,7 @@ static bool may_settle_by_steps(const proof *p, const csg_steps *steps, double l
 static verdict settle_by_cone(const proof *p, const settler *s, const piece *one, const look *l,
                               csg_steps *steps, bool *asks)
 {
-    csg_cone cone;
+    csg_cone cone = {.least = 0};
     const csg_gradients *g = &l->gradients;
     *asks = false;
     if (!l->is_known)
@@ -244,7 +244,6 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
     s->pieces += count;
     s->effort += count * csg_effort_of(&s->tape);
     for (size_t i = 0; i < count; i++) {
-        s->by_cone += answers[i]->what == SETTLED;
         if (answers[i]->what == OPEN)
             answers[i]->what = settle_otherwise(p, s, pieces[i], &looks[i]);
         double times = times_too_large(p, looks[i].d);
@@ -414,11 +413,10 @@ static bool settle_group(void *user, uint32_t worker, size_t group)
     size_t first = group * CSG_OCTANTS, count = p->count - first;
     const csg_tape *whole = &p->remesh->probe.marching->field->tape;
     settler *s = &p->settlers[worker];
-    const group_work before = {s->pieces, s->by_cone, s->effort};
+    const group_work before = {s->pieces, s->effort};
     bool done = settle_eight(p, s, whole, false, p->pieces + first,
                              count < CSG_OCTANTS ? count : CSG_OCTANTS, 0);
-    p->groups[group] = (group_work){s->pieces - before.pieces, s->by_cone - before.by_cone,
-                                    s->effort - before.effort};
+    p->groups[group] = (group_work){s->pieces - before.pieces, s->effort - before.effort};
     if (done)
         return !csg_mesh_should_stop(p->remesh->watch);
     atomic_store(&p->out_of_memory, true);
@@ -486,7 +484,6 @@ static csgm_status settle_pieces(proof *p, uint8_t *pending, csg_distance_proof 
     p->settled = p->at;
     for (size_t i = 0; i < groups; i++) {
         p->looked_at.pieces += p->groups[i].pieces;
-        p->looked_at.by_cone += p->groups[i].by_cone;
         p->looked_at.effort += p->groups[i].effort;
     }
     out->stopped = p->looked_at.effort > MOST_EFFORT;
@@ -575,7 +572,6 @@ static csgm_status check_by_field(const csg_remesh *remesh, double error, bool p
     if (status == CSGM_OK && p.count && !out->stopped)
         status = settle_pieces(&p, pending, out);
     out->pieces += p.looked_at.pieces;
-    out->by_cone += p.looked_at.by_cone;
     out->effort += p.looked_at.effort;
     end(&p);
     return status;

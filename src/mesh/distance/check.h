@@ -25,12 +25,11 @@
 #include "mesh/distance/begun.h"
 
 typedef struct csg_distance_proof {
-    uint64_t pieces;  /* looked at */
-    uint64_t by_cone; /* settled so */
-    uint64_t effort;  /* in and out: of all checks so far, by effort.h */
-    uint64_t open;    /* could not be settled; of begun.h's proof, triangles */
-    csg_vec3 place;   /* of the first of these, field frame */
-    bool stopped;     /* it would have taken too long: nothing is known */
+    uint64_t pieces; /* looked at */
+    uint64_t effort; /* in and out: of all checks so far, by effort.h */
+    uint64_t open;   /* could not be settled; of begun.h's proof, triangles */
+    csg_vec3 place;  /* of the first of these, field frame */
+    bool stopped;    /* it would have taken too long: nothing is known */
 } csg_distance_proof;
 
 /* begun: where it has triangles, they are the surface that the mesh began with; else the field
