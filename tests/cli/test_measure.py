@@ -46,8 +46,8 @@ CLOSED = {
 }
 # part: cubes that `--to 3e-4` takes, which are the same on any machine
 CUBES = {
-    "hook": 58452, "mug": 53033, "cable_clip": 73194, "gear_knob": 146091, "bracket": 100337,
-    "phone_stand": 86150, "bottle": 69682, "spool": 69528, "pipe_manifold": 225888, "chess_pawn": 69500,
+    "hook": 55643, "mug": 51439, "cable_clip": 65260, "gear_knob": 136359, "bracket": 96635,
+    "phone_stand": 80865, "bottle": 6166, "spool": 61266, "pipe_manifold": 220540, "chess_pawn": 1287,
 }
 PARTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenes", "parts")
 

@@ -36,34 +36,34 @@ static double span_of(const walker *w, const double at[3], double spread)
            spread * w->radius;
 }
 
-double csg_slopes_change(const walker *w, const operand *a, const operand *b)
+/* The same of a + sign b, whose gradients are in the balls' hulls. */
+static double span_of_pairs(const walker *w, const operand *a, const operand *b, double sign)
 {
     double most = 0;
-    bool faces = a->faces || b->faces;
-    if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
-        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz) * w->radius;
     for (uint32_t i = 0; i < a->balls.count; i++)
         for (uint32_t k = 0; k < b->balls.count; k++) {
             const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
-            const double d[3] = {p->at[0] - q->at[0], p->at[1] - q->at[1], p->at[2] - q->at[2]};
-            most = fmax(most, faces ? csg_slopes_balls_apart(p, q) * w->radius
-                                    : span_of(w, d, p->spread + q->spread));
+            const double both[3] = {p->at[0] + sign * q->at[0], p->at[1] + sign * q->at[1],
+                                    p->at[2] + sign * q->at[2]};
+            most = fmax(most, span_of(w, both, p->spread + q->spread));
         }
-    return faces ? 1.41421357 * most : most;
+    return most;
+}
+
+double csg_slopes_change(const walker *w, const operand *a, const operand *b)
+{
+    if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
+        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz) * w->radius;
+    if (a->faces || b->faces)
+        return 1.41421357 * (csg_slopes_sets_apart(&a->balls, &b->balls) * w->radius);
+    return span_of_pairs(w, a, b, -1);
 }
 
 double csg_slopes_change_of_sum(const walker *w, const operand *a, const operand *b)
 {
-    double most = 0;
     if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
         return (a->longest + b->longest) * w->radius;
-    for (uint32_t i = 0; i < a->balls.count; i++)
-        for (uint32_t k = 0; k < b->balls.count; k++) {
-            const csg_cone_ball *p = &a->balls.items[i], *q = &b->balls.items[k];
-            const double sum[3] = {p->at[0] + q->at[0], p->at[1] + q->at[1], p->at[2] + q->at[2]};
-            most = fmax(most, span_of(w, sum, p->spread + q->spread));
-        }
-    return most;
+    return span_of_pairs(w, a, b, 1);
 }
 
 /* By how much it can change from c, within the region. */
@@ -378,12 +378,21 @@ static double tangent_value(const walker *w, const csg_tape_node *node, const op
     return is_tangent ? value + turn * (most + slack) : turn * INFINITY;
 }
 
+/* Gradients turn, or in the end are apart, however fast they turn. */
+static void find_sag(const walker *w, operand *leaf)
+{
+    double bend = leaf->balls.bend * w->flat;
+    bool is_slow = bend < 2 * leaf->balls.items[0].spread;
+    leaf->kink = is_slow || !(w->flat > 0) ? 0 : csg_slopes_apart(leaf, leaf) * w->flat;
+    leaf->sag = is_slow ? 0.5 * bend * w->flat : 0;
+}
+
 /* Over the triangle, from the values at its corners: no farther off than gradients stray from one
  * another, and a concave leaf is nowhere less than there. */
 static void find_range(const walker *w, const csg_tape_node *node, operand *leaf)
 {
     const csg_cone_ball *balls = leaf->balls.items;
-    double stray = 0, bend = leaf->balls.bend * w->flat;
+    double stray = 0;
     double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
     double a = leaf_value(w, node, 0), b = leaf_value(w, node, 1), c = leaf_value(w, node, 2);
     leaf->low = fmin(a, fmin(b, c)) - slack;
@@ -392,19 +401,14 @@ static void find_range(const walker *w, const csg_tape_node *node, operand *leaf
         stray = fmax(stray, i ? 2 * csg_slopes_balls_apart(&balls[0], &balls[i]) : balls[0].spread);
     if (leaf->stretched)
         stray = 2 * fmax(csg_norm3(balls[0].at), leaf->balls.corner);
-    /* in the end they turn by no more than they stray, however fast */
-    bool is_slow = bend < 2 * leaf->balls.items[0].spread;
-    leaf->kink = is_slow ? 0 : csg_slopes_apart(leaf, leaf) * w->flat;
-    leaf->sag = is_slow ? 0.5 * bend * w->flat : 0;
-    if (is_slow)
-        stray = 0.5 * bend;
+    double off = leaf->kink > 0 ? stray * w->flat : leaf->sag;
     if (!is_concave(node)) {
-        leaf->low -= stray * w->flat;
-        leaf->high += stray * w->flat;
+        leaf->low -= off;
+        leaf->high += off;
         return;
     }
     bool concave = w->tape->parameters[node->parameters + CSG_LEAF_SIGMA] > 0;
-    double beyond = concave ? leaf->high + stray * w->flat : leaf->low - stray * w->flat;
+    double beyond = concave ? leaf->high + off : leaf->low - off;
     if (leaf->balls.count > 1) {
         double turn = concave ? 1 : -1;
         double tangent = tangent_value(w, node, leaf, turn);
@@ -476,6 +480,7 @@ static bool push_leaf(walker *w, const csg_tape_node *node)
         leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
     if (leaf->faces && !is_concave(node))
         join_faces(leaf);
+    find_sag(w, leaf);
     find_range(w, node, leaf);
     double span = csg_slopes_span(w, leaf);
     leaf->least = leaf->value - span;

@@ -46,6 +46,8 @@ double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *
                           const csg_slopes_operand *b)
 {
     const csg_vec3 *v = w->region.triangle;
+    if (!(w->flat > 0))
+        return 0;
     bool is_one = a->balls.count == 1 && b->balls.count == 1 && !csg_slopes_exceed_hull(a) &&
                   !csg_slopes_exceed_hull(b);
     const csg_cone_ball *p = &a->balls.items[0], *q = &b->balls.items[0];
@@ -59,13 +61,18 @@ double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *
     return most;
 }
 
-double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b)
+double csg_slopes_sets_apart(const csg_cone_balls *a, const csg_cone_balls *b)
 {
     double most = 0;
+    for (uint32_t i = 0; i < a->count; i++)
+        for (uint32_t k = 0; k < b->count; k++)
+            most = fmax(most, csg_slopes_balls_apart(&a->items[i], &b->items[k]));
+    return most;
+}
+
+double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b)
+{
     if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
         return a->longest + b->longest;
-    for (uint32_t i = 0; i < a->balls.count; i++)
-        for (uint32_t k = 0; k < b->balls.count; k++)
-            most = fmax(most, csg_slopes_balls_apart(&a->balls.items[i], &b->balls.items[k]));
-    return most;
+    return csg_slopes_sets_apart(&a->balls, &b->balls);
 }

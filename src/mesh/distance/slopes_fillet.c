@@ -114,7 +114,6 @@ static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32
     for (uint32_t i = 0; i < of[0].balls.count; i++)
         of[0].balls.items[i].spread += stray;
     of[0].longest += stray;
-    of[0].kink = INFINITY;
     for (uint32_t p = count; p < node->arity; p++)
         if (!csg_slopes_mix(&of[0], &of[p], (range){0, 1}, true))
             return false;

@@ -61,8 +61,8 @@ double csg_slopes_change_of_sum(const csg_slopes_walker *w, const csg_slopes_ope
 /* As csg_slopes_change(), from c, with rounding. */
 double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
                         const csg_slopes_operand *b);
-/* a becomes the mixture with b, in any of the shares of a; the value is the caller's. False: no
- * bound is known. */
+/* a becomes the mixture with b, in any of the shares of a; the value is the caller's. Where both
+ * have a share, so is kink: it is INFINITY. False: no bound is known. */
 bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slopes_range share,
                     bool is_sharp);
 /* Of a round operator, whose operands are on the stack. False: no bound is known. */
@@ -89,6 +89,8 @@ static inline double csg_slopes_balls_apart(const csg_cone_ball *a, const csg_co
     const double d[3] = {a->at[0] - b->at[0], a->at[1] - b->at[1], a->at[2] - b->at[2]};
     return csg_norm3(d) + a->spread + b->spread;
 }
+
+double csg_slopes_sets_apart(const csg_cone_balls *a, const csg_cone_balls *b);
 
 /* How far gradients of two operands, or of one, can be from each other. */
 double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b);
