@@ -140,6 +140,19 @@ bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure)
     return any;
 }
 
+bool csg_unsure_add(csg_extraction *x, const csg_vec3 *places, size_t count)
+{
+    csg_judge_room *room = &x->judge->rooms[0];
+    size_t all = room->unsure_count + count;
+    if (!csg_memory_reserve(&x->context->memory, (void **)&room->unsure, &room->unsure_capacity,
+                            all, sizeof *room->unsure))
+        return false;
+    if (count)
+        memcpy(room->unsure + room->unsure_count, places, count * sizeof *places);
+    room->unsure_count = all;
+    return true;
+}
+
 /* ---- without the mesh --------------------------------------------------------------------------
  */
 

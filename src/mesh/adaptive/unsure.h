@@ -23,6 +23,10 @@ void csg_unsure_look(const csg_extraction *x, csg_unsure *unsure, const csgm_mes
  * divided; what it was held against is another one after refinement. */
 bool csg_unsure_end(csg_extraction *x, csg_unsure *unsure);
 
+/* Places that somebody else has found, for the next time that they are taken over from the judge.
+ * False: out of memory. */
+bool csg_unsure_add(csg_extraction *x, const csg_vec3 *places, size_t count);
+
 /* All three, with the triangles of the leaves around the places, before the mesh is made. CSGM_OK
  * or as csg_extract_part. */
 csgm_status csg_unsure_check(csg_extraction *x, bool *any);

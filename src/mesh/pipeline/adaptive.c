@@ -33,6 +33,8 @@ static const double SHARE_OF_CELLS = 0.8, SHARE_OF_SIDES = 0.6;
 /* Bricks that a tolerance may take: what needs more of them gets twice the tolerance. A sheet that
  * is hardly thicker than the tolerance and lies across the cells takes the square of its length. */
 enum { MOST_BRICKS = 1 << 19 };
+/* How often cells are divided around what the mesh has missed, before all are made smaller. */
+enum { MOST_LOOKS = 2 };
 
 typedef struct adaptive {
     csgm_field field; /* of leaves no steeper than distances: what is near is judged by values */
@@ -289,6 +291,7 @@ static void end_room(csg_judge_room *room, csg_memory *memory)
 
 static void release(adaptive *a)
 {
+    csg_far_places_release(&a->goal->away, &a->input.context->memory);
     a->goal->joined = NULL;
     a->goal->seen = NULL;
     csg_joined_end(&a->joined);
@@ -351,6 +354,13 @@ static csgm_status write_tiles(adaptive *a)
     return status;
 }
 
+static void forget_mesh(csg_extraction *x)
+{
+    csg_mesh_destroy(x->mesh);
+    x->mesh = NULL;
+    x->creases = x->smooth = 0;
+}
+
 /* Until every place of the surface that was found is near the mesh: hardly ever twice. Where the
  * memory is narrow, the mesh is made and thinned out in tiles. */
 static csgm_status extract(adaptive *a)
@@ -360,7 +370,8 @@ static csgm_status extract(adaptive *a)
     a->goal->seen = a->judge.tells_seen ? &a->seen : NULL;
     for (;;) {
         bool any = false;
-        if (a->goal->seen && !csg_seen_gather(&a->seen, &a->bricks, &a->input.context->memory))
+        if (!csg_unsure_add(x, a->goal->away.at, a->goal->away.count) ||
+            (a->goal->seen && !csg_seen_gather(&a->seen, &a->bricks, &a->input.context->memory)))
             return csg_context_no_memory(a->input.context);
         size_t tile = csg_mesh_tile_bricks(&a->bricks, a->goal, memory->limit_bytes);
         a->goal->joined = tile ? &a->joined : NULL;
@@ -369,9 +380,7 @@ static csgm_status extract(adaptive *a)
                  : extract_whole(x, &any);
         if (status == CSGM_OK && !any)
             return tile ? write_tiles(a) : paint_whole(a);
-        csg_mesh_destroy(x->mesh);
-        x->mesh = NULL;
-        x->creases = x->smooth = 0;
+        forget_mesh(x);
         if (status == CSGM_OK)
             status = refine(a);
         if (status != CSGM_OK)
@@ -379,17 +388,43 @@ static csgm_status extract(adaptive *a)
     }
 }
 
-static csgm_status make_mesh(adaptive *a)
+/* The mesh of the cells, thinned out. What the judge has kept stays while they may have to be
+ * divided once more. */
+static csgm_status extract_and_reshape(adaptive *a, bool keeps_findings)
 {
     csgm_mesh **mesh = &a->extraction.mesh;
-    csgm_status status = walk(a);
     a->watch.stage = CSGM_STAGE_MESH;
-    if (status == CSGM_OK && !a->goal->is_own)
-        status = extract(a);
-    if (status == CSGM_OK && !a->goal->is_own)
+    csgm_status status = a->goal->is_own ? CSGM_OK : extract(a);
+    if (status == CSGM_OK && !a->goal->is_own && !keeps_findings)
         forget_findings(a);
     if (status == CSGM_OK && (*mesh)->triangle_count)
         status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);
+    return status;
+}
+
+/* Divides the cells around what the mesh has missed, and makes another one. Those of tiles have
+ * nothing left that the judge has kept. */
+static csgm_status look_closer(adaptive *a)
+{
+    csg_mesh_goal *goal = a->goal;
+    csgm_status status = CSGM_OK;
+    for (int i = 1; i <= MOST_LOOKS && goal->cell_size > 0 && !goal->joined && status == CSGM_OK;
+         i++) {
+        goal->cell_size = goal->measured = 0;
+        forget_mesh(&a->extraction);
+        status = extract_and_reshape(a, i < MOST_LOOKS);
+    }
+    return status;
+}
+
+static csgm_status make_mesh(adaptive *a)
+{
+    bool may_look_closer = a->goal->proves && !a->goal->is_last;
+    csgm_status status = walk(a);
+    if (status == CSGM_OK)
+        status = extract_and_reshape(a, may_look_closer);
+    if (status == CSGM_OK)
+        status = look_closer(a);
     if (status != CSGM_OK || a->goal->is_own || a->goal->cell_size > 0)
         return status;
     if (a->input.context->survey)

@@ -136,7 +136,7 @@ csgm_status csg_mesh_build_tries(csgm_context *context, const csgm_field *field,
         was_open = goal.open > 0;
         if (was_open)
             goal.care *= 0.8;
-        goal.finer *= 0.25; /* whole parts are missing */
+        goal.finer *= 0.25; /* whole parts are missing, a closer look did not help */
         goal.measured = 0;
         goal.open = 0;
         base.cell_size = fmax(goal.cell_size, goal.chooses ? least : 0);

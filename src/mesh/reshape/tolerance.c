@@ -131,6 +131,18 @@ static csgm_status prove(csg_remesh *r, csg_mesh_goal *goal, const csg_far_place
     return CSGM_OK;
 }
 
+/* Of what was missed the places that are farther from the mesh than the error, to the goal. */
+static csgm_status list_away(const csg_remesh *r, const csg_missed *missed, csg_mesh_goal *goal)
+{
+    for (size_t i = 0; i < missed->count; i++) {
+        csg_vec3 at = csg_vec3_from_floats(missed->points[i].at);
+        if (csg_triangle_tree_nearest(&r->tree, at, goal->error, NULL) == INFINITY &&
+            !csg_far_places_add(&goal->away, r->memory, at))
+            return csg_context_no_memory(r->context);
+    }
+    return CSGM_OK;
+}
+
 /* What the cells are too large for; where they are free, smaller ones are asked for. */
 static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *missed)
 {
@@ -147,8 +159,10 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
     if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
         goal->cell_size = 0.5 * r->cell;
     if (status == CSGM_OK && goal->follows && !goal->is_last &&
-        missed->farthest > PART * goal->error)
+        missed->farthest > PART * goal->error) {
         goal->cell_size = r->cell;
+        status = list_away(r, missed, goal);
+    }
     goal->unfinished = missed->unfinished;
     return status;
 }

@@ -7,6 +7,7 @@
 #ifndef CSG_MESH_RESHAPE_TOLERANCE_H
 #define CSG_MESH_RESHAPE_TOLERANCE_H
 
+#include "mesh/reshape/far.h"
 #include "mesh/reshape/joined.h"
 
 /* What is wanted of one field's mesh, and what came of it. */
@@ -33,6 +34,8 @@ typedef struct csg_mesh_goal {
     bool is_last;
     /* results */
     double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
+    csg_far_places away; /* where cells follow the shape: the places that asked for it, this time
+                            and before; whoever makes the cells releases them */
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
     uint64_t begun, open;
     uint64_t unfinished; /* stretches of the surface that were too intricate to look through */
