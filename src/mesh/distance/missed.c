@@ -4,6 +4,7 @@
 #include "mesh/distance/missed.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/rank_loop.h"
@@ -28,11 +29,16 @@ enum {
 static const double SHEET_CELLS = 8, AROUND_CELLS = 1;
 static const double SHARE = 0.2; /* of what is left of the stage, for progress */
 
+/* Cubes that are the stretches of a search: an eighth of a frontier cube's side, so that few of
+ * them are near a triangle that has changed. */
+enum { STRETCH_DEPTH = 3 };
+
 /* What a frontier cube gave, and where it is. */
 typedef struct segment {
     uint32_t worker;
     bool unfinished;
     size_t first, count;
+    size_t first_stretch, stretch_count;
     double farthest, unlisted;
     csg_vec3 place;
 } segment;
@@ -46,8 +52,14 @@ typedef struct worker {
     csg_arena arena;
     csg_missed_point *points;
     size_t count, capacity;
-    uint64_t cubes;   /* in the frontier cube at hand, by their effort */
-    size_t near_leaf; /* of the tree of triangles, where one was near */
+    csg_missed_stretch *stretches;
+    size_t stretch_count, stretch_capacity;
+    csg_missed_stretch stretch; /* at hand */
+    bool is_listed;             /* all that was found in it */
+    csg_changed_boxes changed;  /* near the frontier cube at hand */
+    uint64_t cubes;             /* in it, by their effort */
+    size_t near_leaf;           /* of the tree of triangles, where one was near */
+    size_t item;                /* the frontier cube */
     segment *segment;
 } worker;
 
@@ -62,6 +74,8 @@ typedef struct walk {
     segment *segments;
     size_t segment_count;
     size_t *again; /* those that were not finished; NULL = all of them */
+    const csg_missed *before;  /* another search; NULL: there was none */
+    csg_changed_boxes changed; /* around all triangles that it did not have, or had alone */
     atomic_bool out_of_memory;
 } walk;
 
@@ -73,9 +87,11 @@ static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t
         s->segment->farthest = distance;
         s->segment->place = p;
     }
+    s->stretch.farthest = fmax(s->stretch.farthest, distance);
     uint32_t most = distance > w->error ? MOST_FAR : MOST_POINTS;
     if (triangle == CSG_CORNER_NONE || s->segment->count >= most) {
         s->segment->unlisted = fmax(s->segment->unlisted, distance);
+        s->is_listed = false;
         return true;
     }
     if (!csg_memory_reserve(w->remesh->memory, (void **)&s->points, &s->capacity, s->count + 1,
@@ -105,10 +121,15 @@ static bool is_near_mesh(const walk *w, worker *s, const cube *q)
     return most > 0 && is_place_near(w, s, q->c, most);
 }
 
+static double farthest_of_interest(const walk *w)
+{
+    return 4 * w->error + 4 * w->remesh->cell;
+}
+
 /* As far as it matters. Most are near: to look there first costs little. */
 static double distance_from_mesh(const walk *w, csg_vec3 p, uint32_t *triangle)
 {
-    double far = 4 * w->error + 4 * w->remesh->cell;
+    double far = farthest_of_interest(w);
     double distance = csg_triangle_tree_nearest(&w->remesh->tree, p, w->error, triangle);
     if (distance == INFINITY)
         distance = csg_triangle_tree_nearest(&w->remesh->tree, p, far, triangle);
@@ -237,11 +258,107 @@ static bool make_children(const walk *w, worker *s, const cube *parent, cube *ch
         if (csg_prune_state(&s->pruner, o) != CSG_CELL_SURFACE)
             continue;
         child.c = csg_vec3_make((double)c[0][o], (double)c[1][o], (double)c[2][o]);
+        child.path = parent->path << 3 | (unsigned)o;
         if (!csg_prune_shorten(&s->pruner, o, tau, &s->arena, &child.tape))
             return false;
         children[(*count)++] = child;
     }
     return true;
+}
+
+/* ---- what is the same as before ----------------------------------------------------------------
+ */
+
+/* What another search found in a cube; NULL: nothing is known of that. */
+static const csg_missed_stretch *find_stretch(const csg_missed *missed, uint64_t cube_number,
+                                              uint64_t path)
+{
+    size_t low = 0, high = missed->stretch_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const csg_missed_stretch *at = &missed->stretches[middle];
+        if (at->cube < cube_number || (at->cube == cube_number && at->path < path))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    const csg_missed_stretch *found = low < missed->stretch_count ? &missed->stretches[low] : NULL;
+    return found && found->cube == cube_number && found->path == path ? found : NULL;
+}
+
+/* Whether a triangle that matters in a stretch may be another one now. */
+static bool is_changed(const walk *w, const worker *s, const cube *q,
+                       const csg_missed_stretch *stretch)
+{
+    double reach = fmax(w->error, stretch->farthest) * (1 + 1e-6) + q->around;
+    return csg_changed_boxes_come_near(&s->changed, q->c, q->half, reach);
+}
+
+static void begin_stretch(worker *s, const cube *q)
+{
+    s->stretch = (csg_missed_stretch){
+        .cube = s->item, .path = q->path, .first = s->count, .effort = s->cubes};
+    s->is_listed = true;
+}
+
+/* Of what is not listed, or not looked through, nothing is kept. */
+static bool end_stretch(const walk *w, worker *s)
+{
+    csg_missed_stretch *own = &s->stretch;
+    if (!s->is_listed || s->segment->unfinished)
+        return true;
+    if (!csg_memory_reserve(w->remesh->memory, (void **)&s->stretches, &s->stretch_capacity,
+                            s->stretch_count + 1, sizeof *own))
+        return false;
+    own->first -= s->segment->first;
+    own->count = s->count - s->segment->first - own->first;
+    own->effort = s->cubes - own->effort;
+    s->stretches[s->stretch_count++] = *own;
+    s->segment->stretch_count++;
+    return true;
+}
+
+/* Finds the places that were found before; triangles have other numbers now. */
+static bool find_again(const walk *w, worker *s, const cube *q, const csg_missed_stretch *stretch)
+{
+    bool done = true;
+    begin_stretch(s, q);
+    s->cubes += stretch->effort;
+    for (size_t i = 0; i < stretch->count && done; i++) {
+        uint32_t triangle;
+        csg_vec3 at = csg_vec3_from_floats(w->before->points[stretch->first + i].at);
+        double distance = distance_from_mesh(w, at, &triangle);
+        done = keep(w, s, at, distance, triangle);
+    }
+    return done && end_stretch(w, s);
+}
+
+/* Takes those children away in which nothing has changed. False: out of memory. */
+static bool find_known(const walk *w, worker *s, cube *children, uint32_t *count)
+{
+    uint32_t left = 0;
+    bool done = true;
+    for (uint32_t i = 0; i < *count && done; i++) {
+        const csg_missed_stretch *known = find_stretch(w->before, s->item, children[i].path);
+        if (known && !is_changed(w, s, &children[i], known))
+            done = find_again(w, s, &children[i], known);
+        else
+            children[left++] = children[i];
+    }
+    *count = left;
+    return done;
+}
+
+/* ---- down the octree ---------------------------------------------------------------------------
+ */
+
+static bool divide(const walk *w, worker *s, const cube *parent, int depth);
+
+static bool look_at_child(const walk *w, worker *s, cube *q, int depth)
+{
+    s->cubes += csg_effort_of(&q->tape);
+    verdict what = settle(w, s, q);
+    return what != NO_MEMORY && (what == SETTLED || divide(w, s, q, depth));
 }
 
 /* Cubes are halved from 16 cells to a fraction of the error: the depth is bounded. */
@@ -250,20 +367,23 @@ static bool divide(const walk *w, worker *s, const cube *parent, int depth)
     enum { DEEPEST = 24 };
     cube children[CSG_OCTANTS];
     uint32_t count = 0;
+    bool are_stretches = depth + 1 == STRETCH_DEPTH;
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
     bool done = make_children(w, s, parent, children, &count);
+    if (done && are_stretches && w->before)
+        done = find_known(w, s, children, &count);
     if (done && count && may_be_sheet(w, children[0].half)) {
         csg_missed_find_surfaces(&s->field, parent, children, count);
         find_contents_of_children(w, s, children, count);
     }
     for (uint32_t i = 0; i < count && done; i++) {
-        s->cubes += csg_effort_of(&children[i].tape);
-        if (s->cubes > w->most_cubes || depth == DEEPEST) {
+        if (s->cubes + csg_effort_of(&children[i].tape) > w->most_cubes || depth == DEEPEST) {
             s->segment->unfinished = true;
             break;
         }
-        verdict what = settle(w, s, &children[i]);
-        done = what != NO_MEMORY && (what == SETTLED || divide(w, s, &children[i], depth + 1));
+        if (are_stretches)
+            begin_stretch(s, &children[i]);
+        done = look_at_child(w, s, &children[i], depth + 1) && (!are_stretches || end_stretch(w, s));
     }
     csg_arena_release_to(&s->arena, mark);
     return done;
@@ -279,6 +399,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
     cube whole = {.half = CSG_BLOCK_EDGE * lattice->cell_size,
                   .around = AROUND_CELLS * lattice->cell_size,
                   .steepest = INFINITY,
+                  .path = 1,
                   .tape = csg_octree_frontier_tape(w->octree, item, at)};
     double c[3];
     for (int axis = 0; axis < 3; axis++)
@@ -286,9 +407,14 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
             (double)csg_lattice_coordinate(lattice, axis, (2 * at[axis] + 1) * CSG_BLOCK_EDGE);
     whole.c = csg_vec3_make(c[0], c[1], c[2]);
     s->cubes = 0;
+    s->item = item;
     s->segment = &w->segments[item];
-    *s->segment = (segment){.worker = worker_index, .first = s->count};
-    if (!divide(w, s, &whole, 0)) {
+    *s->segment = (segment){
+        .worker = worker_index, .first = s->count, .first_stretch = s->stretch_count};
+    if (!csg_changed_boxes_select(&w->changed, whole.c, whole.half,
+                                  whole.around + farthest_of_interest(w), w->remesh->memory,
+                                  &s->changed) ||
+        !divide(w, s, &whole, 0)) {
         atomic_store(&w->out_of_memory, true);
         return false;
     }
@@ -334,7 +460,10 @@ static void end(walk *w)
         csg_arena_reset(&s->arena);
         csg_memory_release(memory, s->field.scratch, w->scratch_floats * sizeof(float));
         csg_memory_release(memory, s->points, s->capacity * sizeof *s->points);
+        csg_memory_release(memory, s->stretches, s->stretch_capacity * sizeof *s->stretches);
+        csg_changed_boxes_release(&s->changed, memory);
     }
+    csg_changed_boxes_release(&w->changed, memory);
     csg_memory_release(memory, w->workers, w->worker_count * sizeof *w->workers);
     csg_memory_release(memory, w->segments, (w->segment_count + 1) * sizeof *w->segments);
     csg_octree_destroy(w->octree);
@@ -366,6 +495,7 @@ static csgm_status exchange_cubes(walk *w, size_t count, csgm_status own)
         segment *s = &w->segments[w->again ? w->again[i] : i];
         csg_record_read(&reader, i, s, sizeof *s);
         s->worker = 0;
+        s->stretch_count = 0; /* that rank keeps them */
         s->first = to->count;
         to->count += s->count;
         if (!csg_memory_reserve(memory, (void **)&to->points, &to->capacity, to->count,
@@ -410,6 +540,31 @@ static csgm_status look_again(walk *w)
     return status;
 }
 
+/* Those that were known come before the others of their parent. */
+static int compare_stretches(const void *a, const void *b)
+{
+    const csg_missed_stretch *p = a, *q = b;
+    return (p->path > q->path) - (p->path < q->path);
+}
+
+/* Behind those of the cubes before it. */
+static bool gather_stretches(const walk *w, const segment *s, csg_missed *out)
+{
+    size_t needed = out->stretch_count + s->stretch_count;
+    if (!csg_memory_reserve(w->remesh->memory, (void **)&out->stretches, &out->stretch_capacity,
+                            needed, sizeof *out->stretches))
+        return false;
+    for (size_t i = 0; i < s->stretch_count; i++) {
+        csg_missed_stretch *to = &out->stretches[out->stretch_count + i];
+        *to = w->workers[s->worker].stretches[s->first_stretch + i];
+        to->first += out->count;
+    }
+    qsort(out->stretches + out->stretch_count, s->stretch_count, sizeof *out->stretches,
+          compare_stretches);
+    out->stretch_count = needed;
+    return true;
+}
+
 static bool gather_segments(const walk *w, csg_missed *out)
 {
     for (size_t i = 0; i < w->segment_count; i++) {
@@ -420,6 +575,8 @@ static bool gather_segments(const walk *w, csg_missed *out)
         }
         out->unlisted = fmax(out->unlisted, s->unlisted);
         out->unfinished += s->unfinished;
+        if (s->stretch_count && !gather_stretches(w, s, out))
+            return false;
         if (!s->count)
             continue;
         if (!csg_memory_reserve(w->remesh->memory, (void **)&out->points, &out->capacity,
@@ -432,7 +589,20 @@ static bool gather_segments(const walk *w, csg_missed *out)
     return true;
 }
 
-csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
+/* Where there is no memory to tell what has changed all is looked at again. */
+static void compare_with(walk *w, const csg_missed_before *before)
+{
+    const csg_remesh *r = w->remesh;
+    csg_written_triangles now;
+    if (!before->missed.stretch_count || !csg_written_triangles_list(r, &now))
+        return;
+    if (csg_changed_boxes_find(r, &before->triangles, &now, &w->changed))
+        w->before = &before->missed;
+    csg_written_triangles_release(&now, r->memory);
+}
+
+csgm_status csg_missed_find(const csg_remesh *r, double error, const csg_missed_before *before,
+                            csg_missed *out)
 {
     const csg_marching *m = r->marching;
     walk w = {.remesh = r,
@@ -447,6 +617,7 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
     csgm_status status = csg_octree_create(r->context, m->field, m->lattice, &options, &w.octree);
     if (status != CSGM_OK)
         return status == CSGM_CANCELLED ? csg_mesh_why_stopped(r->watch) : status;
+    compare_with(&w, before);
     status = begin(&w) ? look_at_cubes(&w, w.segment_count) : csg_context_no_memory(r->context);
     if (status == CSGM_OK)
         status = look_again(&w);
@@ -458,8 +629,25 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, csg_missed *out)
     return status;
 }
 
+void csg_missed_keep(const csg_remesh *r, csg_missed *missed, csg_missed_before *before)
+{
+    csg_missed_before_release(before, r->memory);
+    if (!csg_written_triangles_list(r, &before->triangles))
+        return;
+    before->missed = *missed;
+    *missed = (csg_missed){0};
+}
+
+void csg_missed_before_release(csg_missed_before *before, csg_memory *memory)
+{
+    csg_missed_release(&before->missed, memory);
+    csg_written_triangles_release(&before->triangles, memory);
+}
+
 void csg_missed_release(csg_missed *missed, csg_memory *memory)
 {
     csg_memory_release(memory, missed->points, missed->capacity * sizeof *missed->points);
+    csg_memory_release(memory, missed->stretches,
+                       missed->stretch_capacity * sizeof *missed->stretches);
     *missed = (csg_missed){0};
 }

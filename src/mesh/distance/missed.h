@@ -9,7 +9,7 @@
 #define CSG_MESH_DISTANCE_MISSED_H
 
 #include "mesh/adaptive/seen.h"
-#include "mesh/remesh/remesh.h"
+#include "mesh/distance/change.h"
 
 /* A place of the surface where it is not one flat sheet, and the triangle that is nearest to it. */
 typedef struct csg_missed_point {
@@ -17,9 +17,21 @@ typedef struct csg_missed_point {
     uint32_t triangle;
 } csg_missed_point;
 
+/* A small cube that was looked through, for a search with another mesh that is the same around it:
+ * what is found there depends on no triangle that is farther than the error, and than `farthest`.
+ */
+typedef struct csg_missed_stretch {
+    uint64_t cube, path;  /* of the octree's frontier; the octants from there, behind a 1 */
+    size_t first, count;  /* of the points */
+    uint64_t effort;
+    double farthest; /* of these, from the mesh */
+} csg_missed_stretch;
+
 typedef struct csg_missed {
     csg_missed_point *points;
     size_t count, capacity;
+    csg_missed_stretch *stretches; /* by cube, then by path */
+    size_t stretch_count, stretch_capacity;
     double farthest; /* of all places looked at, from the mesh */
     csg_vec3 place;  /* where that is, field frame */
     double unlisted; /* the same, of those that are not among the points: too far, or too many */
@@ -27,9 +39,21 @@ typedef struct csg_missed {
         unfinished; /* cubes of the octree's frontier that have more in them than is looked at */
 } csg_missed;
 
+/* A search, and the mesh that it was made with. */
+typedef struct csg_missed_before {
+    csg_missed missed;
+    csg_written_triangles triangles;
+} csg_missed_before;
+
 /* error: what is nearer than that is not missed. CSGM_OK or why it was stopped (reported); the same
- * for any number of threads. */
-csgm_status csg_missed_find(const csg_remesh *remesh, double error, csg_missed *out);
+ * for any number of threads. before: a search with another mesh of the same field and lattice, and
+ * the same error, which is not made again where the mesh is the same; empty: there was none. */
+csgm_status csg_missed_find(const csg_remesh *remesh, double error, const csg_missed_before *before,
+                            csg_missed *out);
+/* Keeps a search, which is taken over, in place of that before; nothing where there is no memory
+ * for it. */
+void csg_missed_keep(const csg_remesh *remesh, csg_missed *missed, csg_missed_before *before);
+void csg_missed_before_release(csg_missed_before *before, csg_memory *memory);
 /* In place of a search: what the judge of cells saw (adaptive/seen.h), as far as the mesh, which
  * may be a part of one, is within the error of it. CSGM_OK, or why it was stopped (reported): then
  * there is nothing to release. */

@@ -45,6 +45,7 @@ typedef struct csg_missed_cube {
     bool ends;              /* it is not divided */
     bool is_asked, is_near; /* whether that place is near the mesh, and that it is */
     csg_missed_content what;
+    uint64_t path; /* of octants from a cube of the octree's frontier, behind a 1 */
 } csg_missed_cube;
 
 /* Whether its value in the middle is too large for a surface to be in it. */

@@ -291,6 +291,7 @@ static void end_room(csg_judge_room *room, csg_memory *memory)
 
 static void release(adaptive *a)
 {
+    csg_missed_before_release(&a->goal->before, &a->input.context->memory);
     csg_far_places_release(&a->goal->away, &a->input.context->memory);
     a->goal->joined = NULL;
     a->goal->seen = NULL;

@@ -7,6 +7,7 @@
 #ifndef CSG_MESH_RESHAPE_TOLERANCE_H
 #define CSG_MESH_RESHAPE_TOLERANCE_H
 
+#include "mesh/distance/missed.h"
 #include "mesh/reshape/far.h"
 #include "mesh/reshape/joined.h"
 
@@ -35,7 +36,8 @@ typedef struct csg_mesh_goal {
     /* results */
     double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
     csg_far_places away; /* where cells follow the shape: the places that asked for it, this time
-                            and before; whoever makes the cells releases them */
+                            and before */
+    csg_missed_before before; /* then, how they were found. Whoever makes the cells releases both */
     double allowed, measured, bound, reshape_s; /* bound: INFINITY where nothing is proven */
     uint64_t begun, open;
     uint64_t unfinished; /* stretches of the surface that were too intricate to look through */
