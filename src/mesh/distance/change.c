@@ -29,9 +29,8 @@ bool csg_written_triangles_list(const csg_remesh *r, csg_written_triangles *out)
         if (!csg_corners_is_live(m, t))
             continue;
         for (uint32_t k = 0; k < 3; k++)
-            csg_vec3_to_floats(
-                out->items[n].at[k],
-                csg_vec3_add(csg_remesh_corner(r, 3 * t + k), r->marching->shift));
+            csg_vec3_to_floats(out->items[n].at[k],
+                               csg_vec3_add(csg_remesh_corner(r, 3 * t + k), r->marching->shift));
         n++;
     }
     qsort(out->items, n, sizeof *out->items, compare_written);
@@ -50,10 +49,10 @@ static csg_box box_of(const csg_remesh *r, const written *triangle)
                    csg_vec3_make(-INFINITY, -INFINITY, -INFINITY)};
     for (int k = 0; k < 3; k++) {
         csg_vec3 at = csg_vec3_sub(csg_vec3_from_floats(triangle->at[k]), r->marching->shift);
-        box.min = csg_vec3_make(fmin(box.min.x, at.x), fmin(box.min.y, at.y),
-                                fmin(box.min.z, at.z));
-        box.max = csg_vec3_make(fmax(box.max.x, at.x), fmax(box.max.y, at.y),
-                                fmax(box.max.z, at.z));
+        box.min =
+            csg_vec3_make(fmin(box.min.x, at.x), fmin(box.min.y, at.y), fmin(box.min.z, at.z));
+        box.max =
+            csg_vec3_make(fmax(box.max.x, at.x), fmax(box.max.y, at.y), fmax(box.max.z, at.z));
     }
     return box;
 }

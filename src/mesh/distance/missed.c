@@ -4,7 +4,6 @@
 #include "mesh/distance/missed.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/rank_loop.h"
@@ -73,8 +72,9 @@ typedef struct walk {
     uint32_t worker_count;
     segment *segments;
     size_t segment_count;
-    size_t *again; /* those that were not finished; NULL = all of them */
-    const csg_missed *before;  /* another search; NULL: there was none */
+    size_t *again;             /* those that were not finished; NULL = all of them */
+    const csg_missed *begun;   /* what was found in those that were not finished */
+    const csg_missed *before;  /* another mesh's search; NULL: there was none */
     csg_changed_boxes changed; /* around all triangles that it did not have, or had alone */
     atomic_bool out_of_memory;
 } walk;
@@ -294,10 +294,10 @@ static bool is_changed(const walk *w, const worker *s, const cube *q,
     return csg_changed_boxes_come_near(&s->changed, q->c, q->half, reach);
 }
 
-static void begin_stretch(worker *s, const cube *q)
+static void begin_stretch(worker *s, uint64_t path)
 {
-    s->stretch = (csg_missed_stretch){
-        .cube = s->item, .path = q->path, .first = s->count, .effort = s->cubes};
+    s->stretch =
+        (csg_missed_stretch){.cube = s->item, .path = path, .first = s->count, .effort = s->cubes};
     s->is_listed = true;
 }
 
@@ -318,35 +318,36 @@ static bool end_stretch(const walk *w, worker *s)
     return true;
 }
 
-/* Finds the places that were found before; triangles have other numbers now. */
-static bool find_again(const walk *w, worker *s, const cube *q, const csg_missed_stretch *stretch)
+/* A stretch that another search has looked through. */
+typedef struct known {
+    const csg_missed *in;
+    const csg_missed_stretch *stretch; /* NULL: none has */
+} known;
+
+static known find_known(const walk *w, const worker *s, const cube *q)
+{
+    const csg_missed *in = w->begun;
+    const csg_missed_stretch *stretch = in ? find_stretch(in, s->item, q->path) : NULL;
+    if (stretch || !w->before)
+        return (known){in, stretch};
+    in = w->before;
+    stretch = find_stretch(in, s->item, q->path);
+    return (known){in, stretch && !is_changed(w, s, q, stretch) ? stretch : NULL};
+}
+
+/* Finds the places that were found before; triangles may have other numbers now. */
+static bool find_again(const walk *w, worker *s, known k)
 {
     bool done = true;
-    begin_stretch(s, q);
-    s->cubes += stretch->effort;
-    for (size_t i = 0; i < stretch->count && done; i++) {
+    begin_stretch(s, k.stretch->path);
+    s->cubes += k.stretch->effort;
+    for (size_t i = 0; i < k.stretch->count && done; i++) {
         uint32_t triangle;
-        csg_vec3 at = csg_vec3_from_floats(w->before->points[stretch->first + i].at);
+        csg_vec3 at = csg_vec3_from_floats(k.in->points[k.stretch->first + i].at);
         double distance = distance_from_mesh(w, at, &triangle);
         done = keep(w, s, at, distance, triangle);
     }
     return done && end_stretch(w, s);
-}
-
-/* Takes those children away in which nothing has changed. False: out of memory. */
-static bool find_known(const walk *w, worker *s, cube *children, uint32_t *count)
-{
-    uint32_t left = 0;
-    bool done = true;
-    for (uint32_t i = 0; i < *count && done; i++) {
-        const csg_missed_stretch *known = find_stretch(w->before, s->item, children[i].path);
-        if (known && !is_changed(w, s, &children[i], known))
-            done = find_again(w, s, &children[i], known);
-        else
-            children[left++] = children[i];
-    }
-    *count = left;
-    return done;
 }
 
 /* ---- down the octree ---------------------------------------------------------------------------
@@ -354,37 +355,53 @@ static bool find_known(const walk *w, worker *s, cube *children, uint32_t *count
 
 static bool divide(const walk *w, worker *s, const cube *parent, int depth);
 
+/* Whether there is enough of the frontier cube's effort left. */
+static bool may_take(const walk *w, worker *s, uint64_t effort)
+{
+    if (s->cubes + effort > w->most_cubes)
+        s->segment->unfinished = true;
+    return !s->segment->unfinished;
+}
+
 static bool look_at_child(const walk *w, worker *s, cube *q, int depth)
 {
-    s->cubes += csg_effort_of(&q->tape);
+    enum { DEEPEST = 24 };
+    uint64_t effort = csg_effort_of(&q->tape);
+    if (depth > DEEPEST)
+        s->segment->unfinished = true;
+    if (!may_take(w, s, effort))
+        return true;
+    if (depth == STRETCH_DEPTH)
+        begin_stretch(s, q->path);
+    s->cubes += effort;
     verdict what = settle(w, s, q);
-    return what != NO_MEMORY && (what == SETTLED || divide(w, s, q, depth));
+    bool done = what != NO_MEMORY && (what == SETTLED || divide(w, s, q, depth));
+    return done && (depth != STRETCH_DEPTH || end_stretch(w, s));
 }
 
 /* Cubes are halved from 16 cells to a fraction of the error: the depth is bounded. */
 static bool divide(const walk *w, worker *s, const cube *parent, int depth)
 {
-    enum { DEEPEST = 24 };
     cube children[CSG_OCTANTS];
-    uint32_t count = 0;
-    bool are_stretches = depth + 1 == STRETCH_DEPTH;
+    known knowns[CSG_OCTANTS] = {{NULL, NULL}};
+    uint32_t count = 0, new_count = 0, next = 0;
     csg_arena_mark mark = csg_arena_get_mark(&s->arena);
     bool done = make_children(w, s, parent, children, &count);
-    if (done && are_stretches && w->before)
-        done = find_known(w, s, children, &count);
-    if (done && count && may_be_sheet(w, children[0].half)) {
-        csg_missed_find_surfaces(&s->field, parent, children, count);
-        find_contents_of_children(w, s, children, count);
-    }
     for (uint32_t i = 0; i < count && done; i++) {
-        if (s->cubes + csg_effort_of(&children[i].tape) > w->most_cubes || depth == DEEPEST) {
-            s->segment->unfinished = true;
-            break;
-        }
-        if (are_stretches)
-            begin_stretch(s, &children[i]);
-        done = look_at_child(w, s, &children[i], depth + 1) && (!are_stretches || end_stretch(w, s));
+        if (depth + 1 == STRETCH_DEPTH)
+            knowns[i] = find_known(w, s, &children[i]);
+        if (!knowns[i].stretch)
+            children[new_count++] = children[i];
     }
+    if (done && new_count && may_be_sheet(w, children[0].half)) {
+        csg_missed_find_surfaces(&s->field, parent, children, new_count);
+        find_contents_of_children(w, s, children, new_count);
+    }
+    for (uint32_t i = 0; i < count && done && !s->segment->unfinished; i++)
+        if (!knowns[i].stretch)
+            done = look_at_child(w, s, &children[next++], depth + 1);
+        else if (may_take(w, s, knowns[i].stretch->effort))
+            done = find_again(w, s, knowns[i]);
     csg_arena_release_to(&s->arena, mark);
     return done;
 }
@@ -409,8 +426,8 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
     s->cubes = 0;
     s->item = item;
     s->segment = &w->segments[item];
-    *s->segment = (segment){
-        .worker = worker_index, .first = s->count, .first_stretch = s->stretch_count};
+    *s->segment =
+        (segment){.worker = worker_index, .first = s->count, .first_stretch = s->stretch_count};
     if (!csg_changed_boxes_select(&w->changed, whole.c, whole.half,
                                   whole.around + farthest_of_interest(w), w->remesh->memory,
                                   &s->changed) ||
@@ -474,7 +491,28 @@ static void report_cubes(void *user, size_t done, size_t count)
     csg_mesh_report_progress(((const walk *)user)->remesh->watch, (double)done / (double)count);
 }
 
-/* What each rank has found in its cubes, to all: of a cube its segment, then its points. */
+/* The points and stretches of a segment, from the record of a rank, to the worker's. */
+static bool take_segment(worker *to, csg_memory *memory, csg_record_reader *reader, size_t record,
+                         segment *s)
+{
+    s->worker = 0;
+    s->first = to->count;
+    s->first_stretch = to->stretch_count;
+    if (!csg_memory_reserve(memory, (void **)&to->points, &to->capacity, to->count + s->count,
+                            sizeof *to->points) ||
+        !csg_memory_reserve(memory, (void **)&to->stretches, &to->stretch_capacity,
+                            to->stretch_count + s->stretch_count, sizeof *to->stretches))
+        return false;
+    to->count += s->count;
+    to->stretch_count += s->stretch_count;
+    csg_record_read(reader, record, to->points + s->first, s->count * sizeof *to->points);
+    csg_record_read(reader, record, to->stretches + s->first_stretch,
+                    s->stretch_count * sizeof *to->stretches);
+    return true;
+}
+
+/* What each rank has found in its cubes, to all: of a cube its segment, its points, its stretches.
+ */
 static csgm_status exchange_cubes(walk *w, size_t count, csgm_status own)
 {
     csgm_context *context = w->remesh->context;
@@ -486,23 +524,17 @@ static csgm_status exchange_cubes(walk *w, size_t count, csgm_status own)
         if (csg_ranks_have(context, i) &&
             (!csg_records_add(memory, &records, s, sizeof *s) ||
              !csg_records_add(memory, &records, w->workers[s->worker].points + s->first,
-                              s->count * sizeof(csg_missed_point))))
+                              s->count * sizeof(csg_missed_point)) ||
+             !csg_records_add(memory, &records, w->workers[s->worker].stretches + s->first_stretch,
+                              s->stretch_count * sizeof(csg_missed_stretch))))
             own = csg_context_no_memory(context);
     }
     csgm_status status = csg_ranks_exchange(context, own, count, &records, &reader);
-    worker *to = &w->workers[0];
     for (size_t i = 0; i < count && status == CSGM_OK; i++) {
         segment *s = &w->segments[w->again ? w->again[i] : i];
         csg_record_read(&reader, i, s, sizeof *s);
-        s->worker = 0;
-        s->stretch_count = 0; /* that rank keeps them */
-        s->first = to->count;
-        to->count += s->count;
-        if (!csg_memory_reserve(memory, (void **)&to->points, &to->capacity, to->count,
-                                sizeof *to->points))
+        if (!take_segment(&w->workers[0], memory, &reader, i, s))
             status = csg_context_no_memory(context);
-        else
-            csg_record_read(&reader, i, to->points + s->first, s->count * sizeof *to->points);
     }
     csg_record_reader_end(memory, &reader);
     return status;
@@ -521,32 +553,6 @@ static csgm_status look_at_cubes(walk *w, size_t count)
                                                             : status;
 }
 
-/* Few cubes take much more than the others. */
-static csgm_status look_again(walk *w)
-{
-    csg_memory *memory = w->remesh->memory;
-    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
-    w->again = csg_memory_alloc(memory, bytes);
-    if (!w->again)
-        return csg_context_no_memory(w->remesh->context);
-    for (size_t i = 0; i < w->segment_count; i++)
-        if (w->segments[i].unfinished)
-            w->again[count++] = i;
-    uint64_t most = ALL_AGAIN / (count + 1);
-    w->most_cubes = most < AGAIN_CUBES ? most : AGAIN_CUBES;
-    csgm_status status = look_at_cubes(w, count);
-    csg_memory_release(memory, w->again, bytes);
-    w->again = NULL;
-    return status;
-}
-
-/* Those that were known come before the others of their parent. */
-static int compare_stretches(const void *a, const void *b)
-{
-    const csg_missed_stretch *p = a, *q = b;
-    return (p->path > q->path) - (p->path < q->path);
-}
-
 /* Behind those of the cubes before it. */
 static bool gather_stretches(const walk *w, const segment *s, csg_missed *out)
 {
@@ -559,34 +565,64 @@ static bool gather_stretches(const walk *w, const segment *s, csg_missed *out)
         *to = w->workers[s->worker].stretches[s->first_stretch + i];
         to->first += out->count;
     }
-    qsort(out->stretches + out->stretch_count, s->stretch_count, sizeof *out->stretches,
-          compare_stretches);
     out->stretch_count = needed;
     return true;
 }
 
+static bool gather_points(const walk *w, const segment *s, csg_missed *out)
+{
+    if (!csg_memory_reserve(w->remesh->memory, (void **)&out->points, &out->capacity,
+                            out->count + s->count, sizeof *out->points))
+        return false;
+    memcpy(out->points + out->count, w->workers[s->worker].points + s->first,
+           s->count * sizeof *out->points);
+    out->count += s->count;
+    return true;
+}
+
+static bool gather_segment(const walk *w, const segment *s, csg_missed *out)
+{
+    if (s->farthest > out->farthest) {
+        out->farthest = s->farthest;
+        out->place = s->place;
+    }
+    out->unlisted = fmax(out->unlisted, s->unlisted);
+    out->unfinished += s->unfinished;
+    return (!s->stretch_count || gather_stretches(w, s, out)) &&
+           (!s->count || gather_points(w, s, out));
+}
+
 static bool gather_segments(const walk *w, csg_missed *out)
 {
-    for (size_t i = 0; i < w->segment_count; i++) {
-        const segment *s = &w->segments[i];
-        if (s->farthest > out->farthest) {
-            out->farthest = s->farthest;
-            out->place = s->place;
-        }
-        out->unlisted = fmax(out->unlisted, s->unlisted);
-        out->unfinished += s->unfinished;
-        if (s->stretch_count && !gather_stretches(w, s, out))
+    for (size_t i = 0; i < w->segment_count; i++)
+        if (!gather_segment(w, &w->segments[i], out))
             return false;
-        if (!s->count)
-            continue;
-        if (!csg_memory_reserve(w->remesh->memory, (void **)&out->points, &out->capacity,
-                                out->count + s->count, sizeof *out->points))
-            return false;
-        memcpy(out->points + out->count, w->workers[s->worker].points + s->first,
-               s->count * sizeof *out->points);
-        out->count += s->count;
-    }
     return true;
+}
+
+/* Few cubes take much more than the others. What was found in them is not looked for twice. */
+static csgm_status look_again(walk *w)
+{
+    csg_memory *memory = w->remesh->memory;
+    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
+    csg_missed begun = {0};
+    w->again = csg_memory_alloc(memory, bytes);
+    bool done = w->again != NULL;
+    for (size_t i = 0; i < w->segment_count && done; i++) {
+        if (!w->segments[i].unfinished)
+            continue;
+        w->again[count++] = i;
+        done = gather_segment(w, &w->segments[i], &begun);
+    }
+    w->begun = &begun;
+    uint64_t most = ALL_AGAIN / (count + 1);
+    w->most_cubes = most < AGAIN_CUBES ? most : AGAIN_CUBES;
+    csgm_status status = done ? look_at_cubes(w, count) : csg_context_no_memory(w->remesh->context);
+    csg_missed_release(&begun, memory);
+    csg_memory_release(memory, w->again, bytes);
+    w->begun = NULL;
+    w->again = NULL;
+    return status;
 }
 
 /* Where there is no memory to tell what has changed all is looked at again. */

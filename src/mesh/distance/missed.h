@@ -21,8 +21,8 @@ typedef struct csg_missed_point {
  * what is found there depends on no triangle that is farther than the error, and than `farthest`.
  */
 typedef struct csg_missed_stretch {
-    uint64_t cube, path;  /* of the octree's frontier; the octants from there, behind a 1 */
-    size_t first, count;  /* of the points */
+    uint64_t cube, path; /* of the octree's frontier; the octants from there, behind a 1 */
+    size_t first, count; /* of the points */
     uint64_t effort;
     double farthest; /* of these, from the mesh */
 } csg_missed_stretch;

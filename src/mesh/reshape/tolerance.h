@@ -34,7 +34,7 @@ typedef struct csg_mesh_goal {
     uint32_t tries;       /* before this one */
     bool is_last;
     /* results */
-    double cell_size; /* > 0: the mesh is not good enough, try again with these cells */
+    double cell_size;    /* > 0: the mesh is not good enough, try again with these cells */
     csg_far_places away; /* where cells follow the shape: the places that asked for it, this time
                             and before */
     csg_missed_before before; /* then, how they were found. Whoever makes the cells releases both */
