@@ -38,8 +38,7 @@ typedef struct segment {
     bool unfinished;
     size_t first, count;
     size_t first_stretch, stretch_count;
-    double farthest, unlisted;
-    csg_vec3 place;
+    csg_missed_distances distances;
 } segment;
 
 typedef csg_missed_cube cube;
@@ -54,7 +53,6 @@ typedef struct worker {
     csg_missed_stretch *stretches;
     size_t stretch_count, stretch_capacity;
     csg_missed_stretch stretch; /* at hand */
-    bool is_listed;             /* all that was found in it */
     csg_changed_boxes changed;  /* near the frontier cube at hand */
     uint64_t cubes;             /* in it, by their effort */
     size_t near_leaf;           /* of the tree of triangles, where one was near */
@@ -81,19 +79,29 @@ typedef struct walk {
 
 /* ---- the walk -------------------------------------------------------------------------------- */
 
+static void take_distance(csg_missed_distances *all, double distance, csg_vec3 at, double unlisted)
+{
+    if (distance > all->farthest) {
+        all->farthest = distance;
+        all->place = at;
+    }
+    all->unlisted = fmax(all->unlisted, unlisted);
+}
+
+static void take_distances(csg_missed_distances *all, const csg_missed_distances *more)
+{
+    take_distance(all, more->farthest, more->place, more->unlisted);
+}
+
 static bool keep(const walk *w, worker *s, csg_vec3 p, double distance, uint32_t triangle)
 {
-    if (distance > s->segment->farthest) {
-        s->segment->farthest = distance;
-        s->segment->place = p;
-    }
-    s->stretch.farthest = fmax(s->stretch.farthest, distance);
     uint32_t most = distance > w->error ? MOST_FAR : MOST_POINTS;
-    if (triangle == CSG_CORNER_NONE || s->segment->count >= most) {
-        s->segment->unlisted = fmax(s->segment->unlisted, distance);
-        s->is_listed = false;
+    bool is_listed = triangle != CSG_CORNER_NONE && s->segment->count < most;
+    double unlisted = is_listed ? 0 : distance;
+    take_distance(&s->segment->distances, distance, p, unlisted);
+    take_distance(&s->stretch.distances, distance, p, unlisted);
+    if (!is_listed)
         return true;
-    }
     if (!csg_memory_reserve(w->remesh->memory, (void **)&s->points, &s->capacity, s->count + 1,
                             sizeof *s->points))
         return false;
@@ -290,7 +298,7 @@ static const csg_missed_stretch *find_stretch(const csg_missed *missed, uint64_t
 static bool is_changed(const walk *w, const worker *s, const cube *q,
                        const csg_missed_stretch *stretch)
 {
-    double reach = fmax(w->error, stretch->farthest) * (1 + 1e-6) + q->around;
+    double reach = fmax(w->error, stretch->distances.farthest) * (1 + 1e-6) + q->around;
     return csg_changed_boxes_come_near(&s->changed, q->c, q->half, reach);
 }
 
@@ -298,14 +306,13 @@ static void begin_stretch(worker *s, uint64_t path)
 {
     s->stretch =
         (csg_missed_stretch){.cube = s->item, .path = path, .first = s->count, .effort = s->cubes};
-    s->is_listed = true;
 }
 
-/* Of what is not listed, or not looked through, nothing is kept. */
+/* Nothing is kept of what is not looked through. */
 static bool end_stretch(const walk *w, worker *s)
 {
     csg_missed_stretch *own = &s->stretch;
-    if (!s->is_listed || s->segment->unfinished)
+    if (s->segment->unfinished)
         return true;
     if (!csg_memory_reserve(w->remesh->memory, (void **)&s->stretches, &s->stretch_capacity,
                             s->stretch_count + 1, sizeof *own))
@@ -340,6 +347,8 @@ static bool find_again(const walk *w, worker *s, known k)
 {
     bool done = true;
     begin_stretch(s, k.stretch->path);
+    s->stretch.distances = k.stretch->distances;
+    take_distances(&s->segment->distances, &k.stretch->distances);
     s->cubes += k.stretch->effort;
     for (size_t i = 0; i < k.stretch->count && done; i++) {
         uint32_t triangle;
@@ -582,11 +591,7 @@ static bool gather_points(const walk *w, const segment *s, csg_missed *out)
 
 static bool gather_segment(const walk *w, const segment *s, csg_missed *out)
 {
-    if (s->farthest > out->farthest) {
-        out->farthest = s->farthest;
-        out->place = s->place;
-    }
-    out->unlisted = fmax(out->unlisted, s->unlisted);
+    take_distances(&out->distances, &s->distances);
     out->unfinished += s->unfinished;
     return (!s->stretch_count || gather_stretches(w, s, out)) &&
            (!s->count || gather_points(w, s, out));

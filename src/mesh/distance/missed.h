@@ -17,14 +17,22 @@ typedef struct csg_missed_point {
     uint32_t triangle;
 } csg_missed_point;
 
+/* How far places of the surface are from the mesh. */
+typedef struct csg_missed_distances {
+    double farthest;
+    csg_vec3 place;  /* where that is, field frame */
+    double unlisted; /* the farthest of those that are not among the points: too far, or too many */
+} csg_missed_distances;
+
 /* A small cube that was looked through, for a search with another mesh that is the same around it:
- * what is found there depends on no triangle that is farther than the error, and than `farthest`.
+ * what is found there depends on no triangle that is farther than the error, and than the farthest
+ * of its places.
  */
 typedef struct csg_missed_stretch {
     uint64_t cube, path; /* of the octree's frontier; the octants from there, behind a 1 */
     size_t first, count; /* of the points */
     uint64_t effort;
-    double farthest; /* of these, from the mesh */
+    csg_missed_distances distances;
 } csg_missed_stretch;
 
 typedef struct csg_missed {
@@ -32,9 +40,7 @@ typedef struct csg_missed {
     size_t count, capacity;
     csg_missed_stretch *stretches; /* by cube, then by path */
     size_t stretch_count, stretch_capacity;
-    double farthest; /* of all places looked at, from the mesh */
-    csg_vec3 place;  /* where that is, field frame */
-    double unlisted; /* the same, of those that are not among the points: too far, or too many */
+    csg_missed_distances distances; /* of all places looked at */
     uint64_t
         unfinished; /* cubes of the octree's frontier that have more in them than is looked at */
 } csg_missed;

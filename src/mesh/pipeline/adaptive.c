@@ -390,27 +390,27 @@ static csgm_status extract(adaptive *a)
 }
 
 /* The mesh of the cells, thinned out. What the judge has kept stays while they may have to be
- * divided once more. */
-static csgm_status extract_and_reshape(adaptive *a, bool keeps_findings)
+ * divided once more; those of tiles have nothing left of it. */
+static csgm_status extract_and_reshape(adaptive *a, bool looks_closer)
 {
+    csg_mesh_goal *goal = a->goal;
     csgm_mesh **mesh = &a->extraction.mesh;
     a->watch.stage = CSGM_STAGE_MESH;
-    csgm_status status = a->goal->is_own ? CSGM_OK : extract(a);
-    if (status == CSGM_OK && !a->goal->is_own && !keeps_findings)
+    csgm_status status = goal->is_own ? CSGM_OK : extract(a);
+    goal->looks_closer = looks_closer && !goal->joined;
+    if (status == CSGM_OK && !goal->is_own && !goal->looks_closer)
         forget_findings(a);
     if (status == CSGM_OK && (*mesh)->triangle_count)
-        status = csg_mesh_reshape(a->goal, mesh, &a->workers.marching, &a->watch);
+        status = csg_mesh_reshape(goal, mesh, &a->workers.marching, &a->watch);
     return status;
 }
 
-/* Divides the cells around what the mesh has missed, and makes another one. Those of tiles have
- * nothing left that the judge has kept. */
-static csgm_status look_closer(adaptive *a)
+/* Divides the cells around what a mesh that is to be proven has missed, and makes another one. */
+static csgm_status make_closer_mesh(adaptive *a)
 {
     csg_mesh_goal *goal = a->goal;
-    csgm_status status = CSGM_OK;
-    for (int i = 1; i <= MOST_LOOKS && goal->cell_size > 0 && !goal->joined && status == CSGM_OK;
-         i++) {
+    csgm_status status = extract_and_reshape(a, goal->proves && !goal->is_last);
+    for (int i = 1; status == CSGM_OK && goal->cell_size > 0 && goal->looks_closer; i++) {
         goal->cell_size = goal->measured = 0;
         forget_mesh(&a->extraction);
         status = extract_and_reshape(a, i < MOST_LOOKS);
@@ -420,12 +420,9 @@ static csgm_status look_closer(adaptive *a)
 
 static csgm_status make_mesh(adaptive *a)
 {
-    bool may_look_closer = a->goal->proves && !a->goal->is_last;
     csgm_status status = walk(a);
     if (status == CSGM_OK)
-        status = extract_and_reshape(a, may_look_closer);
-    if (status == CSGM_OK)
-        status = look_closer(a);
+        status = make_closer_mesh(a);
     if (status != CSGM_OK || a->goal->is_own || a->goal->cell_size > 0)
         return status;
     if (a->input.context->survey)

@@ -156,10 +156,11 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
                    ? csg_missed_take_seen(r, goal->seen, csg_mesh_goal_error(goal), missed)
                    : CSGM_OK;
     csgm_status status = csg_missed_find(r, goal->error, &goal->before, missed);
-    if (status == CSGM_OK && goal->chooses && !goal->is_last && missed->farthest > goal->error)
+    if (status == CSGM_OK && goal->chooses && !goal->is_last &&
+        missed->distances.farthest > goal->error)
         goal->cell_size = 0.5 * r->cell;
-    if (status == CSGM_OK && goal->follows && !goal->is_last &&
-        missed->farthest > PART * goal->error) {
+    double most = goal->looks_closer ? goal->error : PART * goal->error;
+    if (status == CSGM_OK && goal->follows && !goal->is_last && missed->distances.farthest > most) {
         goal->cell_size = r->cell;
         status = list_away(r, missed, goal);
     }
@@ -183,7 +184,7 @@ static csgm_status thin_and_prove(csg_remesh *r, csg_mesh_goal *goal, csg_far_pl
     csgm_status status = find_missed(r, goal, &missed);
     if (status == CSGM_OK && thins && !(goal->cell_size > 0))
         status = thin_out(r, goal, &missed, far);
-    goal->measured = fmax(goal->measured, missed.unlisted);
+    goal->measured = fmax(goal->measured, missed.distances.unlisted);
     csg_missed_release(&missed, r->memory);
     if (status != CSGM_OK || goal->cell_size > 0)
         return status;

@@ -32,6 +32,7 @@ typedef struct csg_mesh_goal {
     double care;          /* of the error: what changes may make, so that the proof has room */
     double started_s;     /* for the time limit of all tries */
     uint32_t tries;       /* before this one */
+    bool looks_closer;    /* cells can still be divided around single places */
     bool is_last;
     /* results */
     double cell_size;    /* > 0: the mesh is not good enough, try again with these cells */
