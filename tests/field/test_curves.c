@@ -138,7 +138,8 @@ static void fill_points(const test_subject *s, csg_random *random, const csg_aff
     }
 }
 
-/* Gradients in a ball keep to the cone that is claimed of a leaf whose frame is an offset. */
+/* Gradients in a ball keep to the cone that is claimed of a leaf whose frame is an offset. claims:
+ * by one ball that is followed. */
 static void check_cone(const test_subject *s, csg_random *random, uint32_t *claims)
 {
     const csg_tape *tape = &s->field->tape;
@@ -147,20 +148,25 @@ static void check_cone(const test_subject *s, csg_random *random, uint32_t *clai
         return;
     for (int i = 0; i < 32; i++) {
         csg_vec3 p = csg_vec3_add(s->field->center, test_point(random, 1.5));
-        double rho = pow(10, csg_random_uniform(random, -4, -0.5)), gradient[3], spread, q[3];
+        double rho = pow(10, csg_random_uniform(random, -4, -0.5)), gradient[3], spread, bend, q[3];
         csg_vec3 from = csg_vec3_sub(p, s->field->center);
         const double at[3] = {from.x, from.y, from.z};
         for (int k = 0; k < 3; k++)
             q[k] = at[k] - (double)parameters[CSG_LEAF_FRAME + k];
-        if (!csg_cone_curve(parameters + CSG_LEAF_OWN_OFFSET, q, rho, gradient, &spread))
+        if (!csg_cone_curve(parameters + CSG_LEAF_OWN_OFFSET, q, rho, gradient, &spread, &bend))
             continue;
         csg_vec3 axis = {gradient[0], gradient[1], gradient[2]};
-        ++*claims;
+        *claims += isfinite(bend);
+        csg_vec3 last = p;
         for (int k = 0; k < 8; k++) {
             double far = rho * cbrt(csg_random_uniform(random, 0, 1));
             csg_vec3 near = csg_vec3_add(p, csg_vec3_scale(test_direction(random), far));
-            csg_vec3 away = csg_vec3_sub(test_sample(s->scene, near).gradient, axis);
-            assert_true(csg_vec3_norm(away) <= spread + 1e-5);
+            csg_vec3 at_near = test_sample(s->scene, near).gradient;
+            assert_true(csg_vec3_norm(csg_vec3_sub(at_near, axis)) <= spread + 1e-5);
+            csg_vec3 change = csg_vec3_sub(at_near, test_sample(s->scene, last).gradient);
+            double apart = csg_vec3_norm(csg_vec3_sub(near, last));
+            assert_true(csg_vec3_norm(change) <= bend * apart + 1e-5);
+            last = near;
         }
     }
 }

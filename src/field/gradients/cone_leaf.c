@@ -126,7 +126,7 @@ static bool add_primitive(csg_cone_leaf *l, csg_primitive_kind kind)
     double g[3], spread;
     if (!csg_node_is_curve(kind))
         return csg_primitive_of(kind)->gradients(l);
-    return csg_cone_curve(l->own, l->q, l->rho, g, &spread) &&
+    return csg_cone_curve(l->own, l->q, l->rho, g, &spread, &l->bend) &&
            csg_cone_add(l, g[0], g[1], g[2], spread);
 }
 
