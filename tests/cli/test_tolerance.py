@@ -45,6 +45,14 @@ class Tolerance(cli.CliTest):
         report = self.run_in("diff", "skin.stl", "own.stl", "--tol", "0.05", "--ignore-topology")
         self.assert_status(report, 0)
 
+    @cli.optimised_only
+    def test_cells_missed_a_place(self):
+        """The first mesh is 0.065 from a place of the knurl: cells are divided there, no others, and all is shown to be within."""
+        stats = self.stats(os.path.join(cli.SCENES, "models", "bottle_cap.txt"), "-e", "0.05", "-o", "out.ply")
+        self.assertEqual((stats["open_places"], stats["max_distance_bound"]), (0, 0.05))
+        self.assertLessEqual(stats["max_distance_measured"], 0.05)
+        self.assertLess(stats["triangles"], 12000)
+
     def radii(self, *arguments):
         """The least and the largest distance of a ball's vertices from its middle, and their triangles."""
         stats = self.stats("ball.txt", *arguments, "-o", "out.ply")
