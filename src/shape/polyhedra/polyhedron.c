@@ -455,10 +455,8 @@ static void take_triangles(csg_polyhedron *solid, csg_triangles *triangles)
     for (size_t i = 0; i < triangles->point_count; i++)
         triangles->points[i] = csg_triangle_frame_leave(&solid->frame, triangles->points[i]);
     for (size_t t = 0; t < triangles->count; t++)
-        for (int k = 0; k < 3; k++) {
-            csg_vec3 p = triangles->points[triangles->corners[t][k]];
-            box = csg_box_hull(box, (csg_box){p, p});
-        }
+        for (int k = 0; k < 3; k++)
+            csg_box_extend(&box, triangles->points[triangles->corners[t][k]]);
     solid->mended = *triangles;
     solid->shape.box = box;
     solid->hash = hash_triangles(&solid->mended);

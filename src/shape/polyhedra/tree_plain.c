@@ -98,7 +98,7 @@ static csg_box box_of(const corners *t)
 {
     csg_box box = csg_box_empty();
     for (int k = 0; k < 3; k++)
-        box = csg_box_hull(box, (csg_box){t->at[k], t->at[k]});
+        csg_box_extend(&box, t->at[k]);
     return box;
 }
 
