@@ -30,20 +30,55 @@ static const float WIDE = 0.9f;
 
 /* ---- vertices -------------------------------------------------------------------------------- */
 
-/* Values and gradients at the vertices, by slot. */
-static void take_gradients(csg_feature_room *room, csg_feature_probe *probe)
+/* Rows of lattice edges along each axis, a bit each: of a layer and a line, as slots count them. */
+typedef struct edge_rows {
+    uint16_t bits[3][N][N];
+} edge_rows;
+
+/* Those of cells that may crease: nobody asks what the gradient is at others. */
+static void mark_edges(const csg_feature_room *room, edge_rows *rows)
+{
+    memset(rows, 0, sizeof *rows);
+    for (int k = 0; k < E; k++)
+        for (int j = 0; j < E; j++) {
+            unsigned cells = room->possible[k * E + j], ends = cells | cells << 1;
+            for (int side = 0; side < 2; side++) {
+                rows->bits[0][k][j + side] |= (uint16_t)cells;
+                rows->bits[0][k + 1][j + side] |= (uint16_t)cells;
+                rows->bits[1][k + side][j] |= (uint16_t)ends;
+                rows->bits[2][k][j + side] |= (uint16_t)ends;
+            }
+        }
+}
+
+static bool is_marked(const edge_rows *rows, unsigned slot)
+{
+    unsigned axis = slot / CSG_BLOCK_POINTS, point = slot % CSG_BLOCK_POINTS;
+    return rows->bits[axis][point / (N * N)][point / N % N] >> point % N & 1;
+}
+
+/* Values and gradients at the vertices, by slot: at all of them, or on the edges of cells that may
+ * crease. */
+static void take_gradients(csg_feature_room *room, csg_feature_probe *probe, bool at_all)
 {
     const csg_slots *slots = &room->slots;
+    edge_rows rows;
+    uint32_t count = 0;
+    mark_edges(room, &rows);
     for (uint32_t i = 0; i < slots->count; i++) {
         const float *p = slots->at[slots->slot[i]];
-        room->x[i] = p[0], room->y[i] = p[1], room->z[i] = p[2];
+        if (!at_all && !is_marked(&rows, slots->slot[i]))
+            continue;
+        room->x[count] = p[0], room->y[count] = p[1], room->z[count] = p[2];
+        room->which[count++] = slots->slot[i];
     }
     float *const g[3] = {room->g[0], room->g[1], room->g[2]};
-    csg_feature_probe_points(probe, room->x, room->y, room->z, slots->count, room->f, g);
-    for (uint32_t i = 0; i < slots->count; i++) {
-        room->value[slots->slot[i]] = room->f[i];
+    csg_feature_probe_points(probe, room->x, room->y, room->z, count, room->f, g);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t slot = room->which[i];
+        room->value[slot] = room->f[i];
         for (int axis = 0; axis < 3; axis++)
-            room->gradient[slots->slot[i]][axis] = room->g[axis][i];
+            room->gradient[slot][axis] = room->g[axis][i];
     }
 }
 
@@ -399,7 +434,7 @@ static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_
                                              probe->scratch_floats);
     if (csg_marching_keeps_roots(m) && !keep_roots(room, block))
         return false;
-    take_gradients(room, probe);
+    take_gradients(room, probe, has_pairs);
     /* before gradients are corrected: that depends on the block, this must not */
     room->any_joined = has_pairs && csg_feature_pair(room, probe);
     if (!possible && !room->any_joined)

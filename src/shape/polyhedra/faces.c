@@ -255,6 +255,110 @@ static csg_box enter_balls(bending *b, csg_shape_balls *balls)
     return box;
 }
 
+/* ---- all balls at once ------------------------------------------------------------------------
+ *
+ * Mostly only few edges are creases, and the faces whose boxes come near to a ball turn so little
+ * that those in it cannot be bent: then no face is held against it.
+ */
+
+enum { MOST_FACES = 512, MOST_SHARP = 128 };
+
+typedef struct bend_survey {
+    bending *bending;
+    float low[3], high[3]; /* of all balls, a little more */
+    csg_box normals;
+    uint32_t count, sharp_count;
+    uint32_t faces[MOST_FACES], sharp[MOST_SHARP]; /* places */
+    csg_vec3 inward[MOST_FACES];
+    uint8_t edges[MOST_SHARP]; /* creases of the sharp ones */
+} bend_survey;
+
+static bool is_beyond(double a, double ab, double ac, float low, float high)
+{
+    double b = a + ab, c = a + ac;
+    return (a < (double)low && b < (double)low && c < (double)low) ||
+           (a > (double)high && b > (double)high && c > (double)high);
+}
+
+/* Whether a triangle's box is apart from that of all balls. */
+static bool is_off(const bend_survey *s, const csg_tree_triangle *t)
+{
+    return is_beyond(t->a.x, t->ab.x, t->ac.x, s->low[0], s->high[0]) ||
+           is_beyond(t->a.y, t->ab.y, t->ac.y, s->low[1], s->high[1]) ||
+           is_beyond(t->a.z, t->ab.z, t->ac.z, s->low[2], s->high[2]);
+}
+
+/* False: there are too many, or some that are not plain. */
+static bool survey_triangle(void *user, uint32_t place)
+{
+    bend_survey *s = user;
+    const csg_polyhedron *solid = s->bending->solid;
+    const csg_tree_triangle *t = &solid->tree.triangles[place];
+    if (is_off(s, t))
+        return true;
+    for (uint8_t k = 0; k < 3; k++) {
+        if (solid->beside[place][k] <= place || !is_crease(s->bending, place, k))
+            continue;
+        if (s->sharp_count == MOST_SHARP)
+            return false;
+        s->sharp[s->sharp_count] = place;
+        s->edges[s->sharp_count++] = k;
+    }
+    if (s->count == MOST_FACES || !csg_polyhedron_is_plain_beyond(solid, place, INFINITY))
+        return false;
+    csg_vec3 inward = csg_polyhedron_inward(t);
+    csg_box_extend(&s->normals, inward);
+    s->faces[s->count] = place;
+    s->inward[s->count++] = inward;
+    return true;
+}
+
+/* Adds faces where those whose boxes come near to a ball are bent. */
+static void add_bent_faces(bend_survey *s)
+{
+    bending *b = s->bending;
+    const csg_tree_triangle *triangles = b->solid->tree.triangles;
+    csg_box normals[CSG_SHAPE_MOST_BALLS];
+    uint64_t near[MOST_FACES], doubtful = 0;
+    for (size_t i = 0; i < b->count; i++)
+        normals[i] = csg_box_empty();
+    for (uint32_t i = 0; i < s->count; i++) {
+        near[i] = balls_at(b, &triangles[s->faces[i]]);
+        for (uint64_t rest = near[i]; rest; rest &= rest - 1)
+            csg_box_extend(&normals[__builtin_ctzll(rest)], s->inward[i]);
+    }
+    for (size_t i = 0; i < b->count; i++)
+        doubtful |= (uint64_t)is_bent(&normals[i], b->crease->most_turn) << i;
+    for (uint32_t i = 0; i < s->count && doubtful; i++)
+        if (near[i] & doubtful)
+            add_face(b, s->faces[i], near[i] & doubtful);
+}
+
+/* Fills in the balls; false: the survey is not worth it, each ball has to be held against each
+ * triangle. */
+static bool survey_balls(bending *b, csg_box box)
+{
+    bend_survey s;
+    const double low[3] = {box.min.x, box.min.y, box.min.z},
+                 high[3] = {box.max.x, box.max.y, box.max.z};
+    s.bending = b;
+    s.count = s.sharp_count = 0;
+    s.normals = csg_box_empty();
+    for (int k = 0; k < 3; k++) {
+        s.low[k] = (float)low[k] - 16 * CSG_TREE_PAD;
+        s.high[k] = (float)high[k] + 16 * CSG_TREE_PAD;
+    }
+    if (!csg_tree_in_box(&b->solid->tree, box, survey_triangle, &s))
+        return false;
+    for (uint32_t i = 0; i < s.sharp_count; i++)
+        add_edge(b, s.sharp[i], s.edges[i], balls_at(b, &b->solid->tree.triangles[s.sharp[i]]));
+    if (is_bent(&s.normals, b->crease->most_turn))
+        add_bent_faces(&s);
+    return true;
+}
+
+/* ---- the whole -------------------------------------------------------------------------------- */
+
 static bool count_triangle(void *user, uint32_t place)
 {
     size_t *left = user;
@@ -276,6 +380,6 @@ void csg_polyhedron_creases(const csg_shape *shape, const csg_shape_crease *crea
     csg_box box = enter_balls(&b, balls);
     if (are_fewer(&b.solid->tree, box, balls->fewest))
         memset(balls->may_crease, true, sizeof balls->may_crease);
-    else
+    else if (!survey_balls(&b, box))
         csg_tree_in_box(&b.solid->tree, box, add_triangle, &b);
 }

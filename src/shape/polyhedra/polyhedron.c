@@ -158,11 +158,13 @@ static csg_triangle_hit find_nearest(walker *w, csg_vec3 p)
     return hit;
 }
 
-static found look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest)
+/* Not returned: a copy by vectors would wait for what was just written. */
+static void look_up(walker *w, csg_vec3 p, csg_triangle_hit nearest, found *f)
 {
-    found f = {.at = p, .nearest = nearest};
-    f.inside = is_inside(w, &f, sqrt(nearest.squared));
-    return f;
+    f->at = p;
+    f->nearest = nearest;
+    f->is_located = false;
+    f->inside = is_inside(w, f, sqrt(nearest.squared));
 }
 
 static walker begin_walk(const csg_polyhedron *solid, const csg_shape_near *near)
@@ -217,7 +219,8 @@ static double sample_polyhedron(const csg_shape *shape, csg_vec3 p, csg_vec3 *gr
     if (csg_polyhedron_is_far(at))
         return far_value(solid, at, gradient ? gradient : &ignored);
     walker w = begin_walk(solid, NULL);
-    found f = look_up(&w, at, find_nearest(&w, at));
+    found f;
+    look_up(&w, at, find_nearest(&w, at), &f);
     if (gradient)
         *gradient = gradient_of(solid, &f);
     return signed_distance(solid, &f);
@@ -260,7 +263,8 @@ static void sample_far(const csg_polyhedron *solid, const packet *k, float *out,
             out[i] = (float)far_value(solid, k->at[i], gradient);
             continue;
         }
-        found f = look_up(&w, k->at[i], find_nearest(&w, k->at[i]));
+        found f;
+        look_up(&w, k->at[i], find_nearest(&w, k->at[i]), &f);
         out[i] = (float)signed_distance(solid, &f);
         *gradient = gradient_of(solid, &f);
     }
@@ -281,7 +285,8 @@ static void sample_near(const csg_polyhedron *solid, const csg_shape_kernel *ker
     }
     csg_packet_search(&w.solid->tree, kernel, &w.parts, k->at, k->count, k->nearest);
     for (size_t i = 0; i < k->count; i++) {
-        found f = look_up(&w, k->at[i], k->nearest[i]);
+        found f;
+        look_up(&w, k->at[i], k->nearest[i], &f);
         out[i] = (float)signed_distance(solid, &f);
         if (gradients)
             gradients[i] = gradient_of(solid, &f);
@@ -450,10 +455,8 @@ static void take_triangles(csg_polyhedron *solid, csg_triangles *triangles)
     for (size_t i = 0; i < triangles->point_count; i++)
         triangles->points[i] = csg_triangle_frame_leave(&solid->frame, triangles->points[i]);
     for (size_t t = 0; t < triangles->count; t++)
-        for (int k = 0; k < 3; k++) {
-            csg_vec3 p = triangles->points[triangles->corners[t][k]];
-            box = csg_box_hull(box, (csg_box){p, p});
-        }
+        for (int k = 0; k < 3; k++)
+            csg_box_extend(&box, triangles->points[triangles->corners[t][k]]);
     solid->mended = *triangles;
     solid->shape.box = box;
     solid->hash = hash_triangles(&solid->mended);

@@ -41,10 +41,8 @@ static csg_box used_box(const csg_triangles *in)
 {
     csg_box box = csg_box_empty();
     for (size_t t = 0; t < in->count; t++)
-        for (int k = 0; k < 3; k++) {
-            csg_vec3 p = in->points[in->corners[t][k]];
-            box = csg_box_hull(box, (csg_box){p, p});
-        }
+        for (int k = 0; k < 3; k++)
+            csg_box_extend(&box, in->points[in->corners[t][k]]);
     return box;
 }
 

@@ -98,7 +98,7 @@ static csg_box box_of(const corners *t)
 {
     csg_box box = csg_box_empty();
     for (int k = 0; k < 3; k++)
-        box = csg_box_hull(box, (csg_box){t->at[k], t->at[k]});
+        csg_box_extend(&box, t->at[k]);
     return box;
 }
 
@@ -185,13 +185,15 @@ typedef struct wide_box {
     float low[3], high[3];
 } wide_box;
 
-/* All that the triangles of a group can cross, if it is not too much: places, and their boxes by
- * fours. */
+/* All that the triangles of a group can cross, if it is not too much: places, and their boxes and
+ * corners by fours. */
 typedef struct surroundings {
     const csg_tree *tree;
     uint32_t places[MOST_AROUND], count;
     float low[3][MOST_AROUND], high[3][MOST_AROUND];
-    wide_box box; /* of the group */
+    wide_box box;    /* of the group */
+    csg_vec3 origin; /* of the corners */
+    float corner[3][3][MOST_AROUND], largest;
     bool are_all;
 } surroundings;
 
@@ -208,10 +210,25 @@ static inline wide_box wide_box_of(const csg_tree_triangle *t)
     return box;
 }
 
+static void take_corners(surroundings *around, uint32_t i, const csg_tree_triangle *t)
+{
+    const corners c = corners_of(t);
+    for (int k = 0; k < 3; k++) {
+        csg_vec3 p = csg_vec3_sub(c.at[k], around->origin);
+        const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
+        for (int axis = 0; axis < 3; axis++) {
+            float size = fabsf(at[axis]);
+            around->corner[k][axis][i] = at[axis];
+            around->largest = size > around->largest ? size : around->largest;
+        }
+    }
+}
+
 static bool list_place(void *user, uint32_t place)
 {
     surroundings *around = user;
-    const wide_box box = wide_box_of(&around->tree->triangles[place]);
+    const csg_tree_triangle *t = &around->tree->triangles[place];
+    const wide_box box = wide_box_of(t);
     uint32_t i = around->count;
     bool is_apart = false;
     for (int k = 0; k < 3; k++)
@@ -225,6 +242,7 @@ static bool list_place(void *user, uint32_t place)
         around->low[k][i] = box.low[k];
         around->high[k][i] = box.high[k];
     }
+    take_corners(around, i, t);
     around->places[around->count++] = place;
     return true;
 }
@@ -242,15 +260,19 @@ static void look_around(const csg_tree *tree, uint32_t first, uint32_t count, su
     }
     around->tree = tree;
     around->count = 0;
+    around->origin = tree->triangles[first].a;
+    around->largest = 0;
     around->are_all = true;
     csg_box box = {csg_vec3_from_floats(whole->low), csg_vec3_from_floats(whole->high)};
     csg_tree_in_box(tree, box, list_place, around);
-    for (uint32_t i = around->count; i % 4; i++) /* the first again: once more does no harm */
+    for (uint32_t i = around->count; i % 4; i++) { /* the first again: once more does no harm */
+        around->places[i] = around->places[0];
+        take_corners(around, i, &tree->triangles[around->places[0]]);
         for (int k = 0; k < 3; k++) {
-            around->places[i] = around->places[0];
             around->low[k][i] = around->low[k][0];
             around->high[k][i] = around->high[k][0];
         }
+    }
 }
 
 /* Of four places from `i` on those whose boxes meet a box, a bit each. */
@@ -265,15 +287,81 @@ static inline unsigned near_of_four(const surroundings *around, uint32_t i, cons
     return csg_four_bits(near);
 }
 
-static bool crosses_some(const csg_tree *tree, uint32_t place, const surroundings *around)
+/* The plane of a triangle, and more than heights above it are off in float: some twelve roundings,
+ * each by 2^-24 of at most three times the largest coordinate. */
+typedef struct plane {
+    float normal[3], at, error;
+} plane;
+
+static plane plane_of(const surroundings *around, const corners *t)
+{
+    csg_vec3 normal = csg_vec3_normalize(
+        csg_vec3_cross(csg_vec3_sub(t->at[1], t->at[0]), csg_vec3_sub(t->at[2], t->at[0])));
+    plane p = {{(float)normal.x, (float)normal.y, (float)normal.z},
+               (float)csg_vec3_dot(normal, csg_vec3_sub(t->at[0], around->origin)),
+               0x1p-18f * around->largest};
+    return p;
+}
+
+/* Of four places from `i` on, a bit each: those certainly beside a plane (is_beside), but for a
+ * corner that they must share with its triangle: alone[k] where that is corner k. */
+static inline unsigned beside_of_four(const surroundings *around, uint32_t i, const plane *of,
+                                      unsigned alone[3])
+{
+    csg_four_mask above[3], below[3];
+    csg_four error = csg_four_all(of->error);
+    for (int k = 0; k < 3; k++) {
+        csg_four height = csg_four_load(around->corner[k][0] + i) * csg_four_all(of->normal[0]) +
+                          csg_four_load(around->corner[k][1] + i) * csg_four_all(of->normal[1]) +
+                          csg_four_load(around->corner[k][2] + i) * csg_four_all(of->normal[2]) -
+                          csg_four_all(of->at);
+        above[k] = height > error;
+        below[k] = height < -error;
+    }
+    for (int k = 0; k < 3; k++) {
+        int m = (k + 1) % 3, n = (k + 2) % 3;
+        alone[k] = csg_four_bits((above[m] & above[n]) | (below[m] & below[n]));
+    }
+    return csg_four_bits((above[0] & above[1] & above[2]) | (below[0] & below[1] & below[2]));
+}
+
+/* Of four places from `i` on those that may meet a triangle, a bit each. Those across its edges
+ * share two corners with it, so they do not. */
+static unsigned doubtful_of_four(const surroundings *around, uint32_t i, const corners *own,
+                                 const wide_box *box, const plane *of, const uint32_t beside[3])
+{
+    unsigned near = near_of_four(around, i, box), alone[3];
+    for (unsigned rest = near; rest; rest &= rest - 1) {
+        uint32_t n = (uint32_t)__builtin_ctz(rest), place = around->places[i + n];
+        if (place == beside[0] || place == beside[1] || place == beside[2])
+            near &= ~(1u << n);
+    }
+    if (!near)
+        return 0;
+    near &= ~beside_of_four(around, i, of, alone);
+    for (int k = 0; k < 3; k++)
+        for (unsigned rest = near & alone[k]; rest; rest &= rest - 1) {
+            uint32_t n = (uint32_t)__builtin_ctz(rest);
+            const csg_tree_triangle *t = &around->tree->triangles[around->places[i + n]];
+            csg_vec3 p = k == 0 ? t->a : csg_vec3_add(t->a, k == 1 ? t->ab : t->ac);
+            if (is_same(p, own->at[0]) || is_same(p, own->at[1]) || is_same(p, own->at[2]))
+                near &= ~(1u << n);
+        }
+    return near;
+}
+
+static bool crosses_some(const csg_tree *tree, uint32_t place, const uint32_t beside[3],
+                         const surroundings *around)
 {
     corners own = corners_of(&tree->triangles[place]);
     crossing_search s = {tree, place, own, box_of(&own)};
     if (!around->are_all)
         return !csg_tree_in_box(tree, s.box, is_apart, &s);
     const wide_box box = wide_box_of(&tree->triangles[place]);
+    const plane of = plane_of(around, &own);
     for (uint32_t i = 0; i < around->count; i += 4)
-        for (unsigned near = near_of_four(around, i, &box); near; near &= near - 1)
+        for (unsigned near = doubtful_of_four(around, i, &own, &box, &of, beside); near;
+             near &= near - 1)
             if (!is_apart(&s, around->places[i + (uint32_t)__builtin_ctz(near)]))
                 return true;
     return false;
@@ -313,7 +401,8 @@ uint32_t csg_tree_plain_group(const csg_tree *tree, uint32_t (*beside)[3], uint3
     surroundings around;
     look_around(tree, first, count, &around);
     for (uint32_t i = 0; i < count; i++)
-        if (!tree->triangles[first + i].is_needle && !crosses_some(tree, first + i, &around))
+        if (!tree->triangles[first + i].is_needle &&
+            !crosses_some(tree, first + i, beside[first + i], &around))
             apart |= 1u << i;
     while (apart) {
         uint32_t one = apart & -apart;
