@@ -29,6 +29,18 @@ double csg_slopes_value_of_node(const walker *w, const csg_tape_node *node)
     return csg_tape_value_at(w->kernel, &below, w->region.c, w->scratch, w->scratch_floats);
 }
 
+/* Whether it may have a crease, since some of its operands do not meet: two that do have none. */
+static bool may_crease(const walker *w, const csg_tape_node *node)
+{
+    const csg_tape *tape = w->tape;
+    const csg_tape_node *last = node - 1 - node->planes, *first = last - last->size;
+    if (!csg_fillet_has_apart(tape, node) || node->arity - node->planes != 2)
+        return csg_fillet_has_apart(tape, node);
+    float planes_once = tape->parameters[node->parameters + CSG_FILLET_PLANES_ONCE];
+    return csg_fillet_rows_apart(tape->parameters, first->join_parameters, last->join_parameters,
+                                 (uint32_t)planes_once);
+}
+
 /* What a fillet ends at: how far inside of the nearest of its planes operands are at least. */
 static double ends_of(const walker *w, const csg_tape_node *node, const operand *planes, which what)
 {
@@ -96,25 +108,59 @@ static range fillet_shares(const walker *w, const operand *of, double turn, doub
     return (range){fmax(low, 0), fmin(high, 1)};
 }
 
-/* Those that blend turn little from each other, or are planes. */
-static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32_t count)
+/* Of a pair with one angle all along F is convex, and its second derivative along a change of the
+ * operands' difference x is (2 - d)^2 r^2 / (d root^3) where it blends, root^2 = (2 - d) (2 r^2 -
+ * x^2 / d): it grows with x, which is r d at most there. That the angle changes is a part of the
+ * gradient of its own, no longer than `stray`: values are off by that times the way to a corner. */
+static void find_sag(const walker *w, operand *pair, double parting, double farthest, double r,
+                     csg_fillet_turns turns, double stray)
+{
+    static const double LEAST = 0.02; /* of d: nearly tangent faces hardly blend */
+    double d = (double)turns.least, x = fmin(farthest, r * (double)turns.most);
+    if (!(d >= LEAST)) {
+        pair->kink = INFINITY;
+        return;
+    }
+    double rest = 2 * r * r - fmin(x * x / d, x * r);
+    double bend = sqrt(2 - d) * r * r / (d * rest * sqrt(rest));
+    pair->kink += stray * w->flat;
+    pair->sag += 0.125 * bend * parting * parting;
+}
+
+/* Those that blend turn little from each other, or are planes. ends: the planes take part. */
+static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32_t count,
+                       csg_fillet_turns d, bool ends)
 {
     const csg_vec3 at = w->region.c;
     const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     operand *of = &w->stack[w->top - node->arity];
-    double stray, apart = 0;
+    double r = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+    double stray, apart = 0, farthest = INFINITY, parting = 0;
+    bool creases = may_crease(w, node); /* and which of them blend is not told */
+    bool is_pair = count == 2 && !creases && !ends && (double)d.most < CSG_FILLET_FADE;
+    operand plain = of[0];
+    if (is_pair) {
+        farthest = fabs(of[0].value - of[1].value) + csg_slopes_reach(w, &of[0], &of[1]);
+        parting = csg_slopes_parting(w, &of[0], &of[1]);
+        plain.kink = fmax(of[0].kink, of[1].kink);
+        plain.sag = fmax(of[0].sag, of[1].sag);
+    }
     if (count == 2)
         apart = fabs(of[0].value - of[1].value) - csg_slopes_reach(w, &of[0], &of[1]);
     if (!csg_fillet_find_stray(w->tape, node, c, w->radius, fmax(apart, 0), &stray))
         return false;
     for (uint32_t k = 1; k < count; k++)
-        if (!csg_slopes_mix(&of[0], &of[k], share,
-                            count > 2 || csg_fillet_has_apart(w->tape, node)))
+        if (!csg_slopes_mix(&of[0], &of[k], share, count > 2 || creases))
             return false;
     for (uint32_t i = 0; i < of[0].balls.count; i++)
         of[0].balls.items[i].spread += stray;
     of[0].longest += stray;
-    for (uint32_t p = count; p < node->arity; p++)
+    if (is_pair) {
+        of[0].kink = plain.kink;
+        of[0].sag = plain.sag;
+        find_sag(w, &of[0], parting, farthest, r, d, stray);
+    }
+    for (uint32_t p = count; p < node->arity && ends; p++)
         if (!csg_slopes_mix(&of[0], &of[p], (range){0, 1}, true))
             return false;
     return true;
@@ -134,23 +180,27 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
         return false;
     csg_fillet_turns d = csg_fillet_find_turns(w->tape, node, c, w->radius);
     range share = count == 2 ? fillet_shares(w, of, turn, r, d) : (range){0, 1};
-    bool may_crease = csg_fillet_has_apart(w->tape, node); /* and which of them blend is not told */
-    if (may_crease)
+    bool creases = may_crease(w, node); /* and which of them blend is not told */
+    if (creases)
         share = (range){0, 1};
     bool blends = share.low < 1 && share.high > 0;
     if (!blends)
         d = (csg_fillet_turns){0, 0};
     /* A union is least where its operands turn least, but for where the radius fades. */
-    bool is_known = count == 2 && (double)d.most < CSG_FILLET_FADE && !may_crease;
+    bool is_known = count == 2 && (double)d.most < CSG_FILLET_FADE && !creases;
+    bool takes_ends = node->planes > 0;
     for (int i = 0; i < 2; i++) {
         which from = ends[i][turn < 0], to = ends[i][turn > 0];
         double start = ends_of(w, node, of + count, from), end = ends_of(w, node, of + count, to);
         low[i] = fillet_value(of, from, count, turn, r, is_known ? (double)d.least : 0, start);
         high[i] = fillet_value(of, to, count, turn, r, (double)d.most, end);
+        if (i == 1 && turn > 0)
+            takes_ends &= !(start >= high[i]);
     }
     for (uint32_t i = 0; i < node->arity; i++)
         doubt = fmax(doubt, of[i].doubt);
-    if (blends ? !mix_fillet(w, node, share, count) : !csg_slopes_mix(&of[0], &of[1], share, true))
+    if (blends ? !mix_fillet(w, node, share, count, d, takes_ends)
+               : !csg_slopes_mix(&of[0], &of[1], share, true))
         return false;
     w->top -= node->arity - 1;
     of[0].value = csg_slopes_value_of_node(w, node);
