@@ -194,7 +194,7 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
         double start = ends_of(w, node, of + count, from), end = ends_of(w, node, of + count, to);
         low[i] = fillet_value(of, from, count, turn, r, is_known ? (double)d.least : 0, start);
         high[i] = fillet_value(of, to, count, turn, r, (double)d.most, end);
-        if (i == 1 && turn > 0)
+        if (i == 1 && turn > 0 && count == 2) /* of several, some end before others */
             takes_ends &= !(start >= high[i]);
     }
     for (uint32_t i = 0; i < node->arity; i++)
