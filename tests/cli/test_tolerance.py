@@ -143,7 +143,8 @@ class Tolerance(cli.CliTest):
         self.assertFalse(self.read("whole.ply") == self.read("a.ply"))
         self.assertTrue(tiles["manifold"])
         self.assertEqual(tiles["euler"], whole["euler"])
-        self.assertEqual(tiles["triangles_before"], whole["triangles_before"])
+        self.assertLessEqual(tiles["triangles_before"], whole["triangles_before"])  # with cells divided where places were missed
+        self.assertGreater(tiles["triangles_before"], 0.98 * whole["triangles_before"])
         self.assertEqual(tiles["max_distance_bound"], 0.05)
         self.assertLess(tiles["triangles"], 1.1 * whole["triangles"])
         self.assert_status(self.run_in(*arguments, "-o", "b.ply", "-q", "--max-memory", "16M", "-j", 1), 0)

@@ -422,8 +422,12 @@ static void test_tiles(void **state)
         mesh_build_closed(&one, &options, what);
         assert_uncrossed(one.mesh, what);
         mesh_assert_same(one.mesh, other.mesh, what);
-        assert_int_equal(one.stats.triangles_before, whole.stats.triangles_before);
-        assert_int_equal(one.stats.feature_vertices, whole.stats.feature_vertices);
+        if (options.tolerance > 0) /* of a whole cells are divided around places that it missed */
+            assert_true(one.stats.triangles_before <= whole.stats.triangles_before);
+        else
+            assert_int_equal(one.stats.triangles_before, whole.stats.triangles_before);
+        if (one.stats.triangles_before == whole.stats.triangles_before)
+            assert_int_equal(one.stats.feature_vertices, whole.stats.feature_vertices);
         if (whole.stats.max_distance_measured <= whole.stats.distance_allowed)
             assert_true(one.stats.max_distance_measured <= one.stats.distance_allowed);
         tiled += one.mesh->triangle_count != whole.mesh->triangle_count;

@@ -78,7 +78,7 @@ static csg_missed find_missed(bench *b, csgm_mesh *mesh, csg_missed_before *befo
     const csg_remesh_origin origin = {.kinds = kinds};
     assert_non_null(kinds);
     assert_int_equal(csg_remesh_begin(&r, mesh, &origin, &b->workers.marching, &b->watch), CSGM_OK);
-    assert_int_equal(csg_missed_find(&r, b->error, before, &missed), CSGM_OK);
+    assert_int_equal(csg_missed_find(&r, b->error, before, keeps, &missed), CSGM_OK);
     if (keeps)
         csg_missed_keep(&r, &missed, before);
     csg_mesh_destroy(r.mesh);

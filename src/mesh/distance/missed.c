@@ -71,6 +71,7 @@ typedef struct walk {
     segment *segments;
     size_t segment_count;
     size_t *again;             /* those that were not finished; NULL = all of them */
+    bool keeps;                /* stretches of what is finished */
     const csg_missed *begun;   /* what was found in those that were not finished */
     const csg_missed *before;  /* another mesh's search; NULL: there was none */
     csg_changed_boxes changed; /* around all triangles that it did not have, or had alone */
@@ -444,6 +445,10 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
         atomic_store(&w->out_of_memory, true);
         return false;
     }
+    if (!w->keeps && !s->segment->unfinished) {
+        s->stretch_count = s->segment->first_stretch;
+        s->segment->stretch_count = 0;
+    }
     return !csg_mesh_should_stop(w->remesh->watch);
 }
 
@@ -643,11 +648,12 @@ static void compare_with(walk *w, const csg_missed_before *before)
 }
 
 csgm_status csg_missed_find(const csg_remesh *r, double error, const csg_missed_before *before,
-                            csg_missed *out)
+                            bool keeps, csg_missed *out)
 {
     const csg_marching *m = r->marching;
     walk w = {.remesh = r,
               .error = error,
+              .keeps = keeps,
               .least = fmax(0.25 * error, 1e-4 * r->cell),
               .lipschitz = (double)m->field->tape.lipschitz};
     *out = (csg_missed){0};

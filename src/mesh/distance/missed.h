@@ -53,9 +53,10 @@ typedef struct csg_missed_before {
 
 /* error: what is nearer than that is not missed. CSGM_OK or why it was stopped (reported); the same
  * for any number of threads. before: a search with another mesh of the same field and lattice, and
- * the same error, which is not made again where the mesh is the same; empty: there was none. */
+ * the same error, which is not made again where the mesh is the same; empty: there was none. keeps:
+ * *out has the stretches for csg_missed_keep(), which take some MB. */
 csgm_status csg_missed_find(const csg_remesh *remesh, double error, const csg_missed_before *before,
-                            csg_missed *out);
+                            bool keeps, csg_missed *out);
 /* Keeps a search, which is taken over, in place of that before; nothing where there is no memory
  * for it. */
 void csg_missed_keep(const csg_remesh *remesh, csg_missed *missed, csg_missed_before *before);

@@ -155,7 +155,7 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
         return goal->seen && !goal->joined
                    ? csg_missed_take_seen(r, goal->seen, csg_mesh_goal_error(goal), missed)
                    : CSGM_OK;
-    csgm_status status = csg_missed_find(r, goal->error, &goal->before, missed);
+    csgm_status status = csg_missed_find(r, goal->error, &goal->before, goal->looks_closer, missed);
     if (status == CSGM_OK && goal->chooses && !goal->is_last &&
         missed->distances.farthest > goal->error)
         goal->cell_size = 0.5 * r->cell;
@@ -165,7 +165,7 @@ static csgm_status find_missed(csg_remesh *r, csg_mesh_goal *goal, csg_missed *m
         status = list_away(r, missed, goal);
     }
     goal->unfinished = missed->unfinished;
-    if (status == CSGM_OK && goal->away.count && goal->cell_size > 0)
+    if (status == CSGM_OK && goal->looks_closer && goal->cell_size > 0)
         csg_missed_keep(r, missed, &goal->before);
     return status;
 }
