@@ -118,6 +118,18 @@ void csg_record_read(csg_record_reader *reader, size_t item, void *to, size_t co
     *at += count;
 }
 
+bool csg_record_read_behind(csg_memory *memory, csg_record_reader *reader, size_t item, void **data,
+                            size_t *count, size_t *capacity, size_t more, size_t element_bytes)
+{
+    if (!csg_memory_reserve(memory, data, capacity, *count + more, element_bytes))
+        return false;
+    if (more)
+        csg_record_read(reader, item, (uint8_t *)*data + *count * element_bytes,
+                        more * element_bytes);
+    *count += more;
+    return true;
+}
+
 void csg_record_reader_end(csg_memory *memory, csg_record_reader *reader)
 {
     csg_memory_release(memory, reader->at, 2 * (size_t)reader->ranks * sizeof *reader->at);

@@ -54,6 +54,9 @@ csgm_status csg_ranks_exchange(csgm_context *context, csgm_status own, size_t co
 /* The next bytes of the record of an item; what is read of one item after the other must be what
  * was added. */
 void csg_record_read(csg_record_reader *reader, size_t item, void *to, size_t count);
+/* So many elements of it, behind those of an array of csg_memory. False: out of memory. */
+bool csg_record_read_behind(csg_memory *memory, csg_record_reader *reader, size_t item, void **data,
+                            size_t *count, size_t *capacity, size_t more, size_t element_bytes);
 void csg_record_reader_end(csg_memory *memory, csg_record_reader *reader);
 
 #endif

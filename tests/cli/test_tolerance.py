@@ -145,6 +145,9 @@ class Tolerance(cli.CliTest):
         self.assertEqual(tiles["euler"], whole["euler"])
         self.assertLessEqual(tiles["triangles_before"], whole["triangles_before"])  # with cells divided where places were missed
         self.assertGreater(tiles["triangles_before"], 0.98 * whole["triangles_before"])
+        thinned = [self.stats("lattice.txt", "--simplify", "0.05", "-o", "c.ply", "-j", 2, *limit)["triangles_before"]
+                   for limit in ((), ("--max-memory", "16M"))]
+        self.assertEqual(*thinned)  # nothing is proven: of the same cells
         self.assertEqual(tiles["max_distance_bound"], 0.05)
         self.assertLess(tiles["triangles"], 1.1 * whole["triangles"])
         self.assert_status(self.run_in(*arguments, "-o", "b.ply", "-q", "--max-memory", "16M", "-j", 1), 0)

@@ -161,16 +161,11 @@ static bool unpack_item(csg_cell_loop *w, size_t item, csg_record_reader *record
     s->worker = 0;
     s->first = to->count;
     s->first_corner = to->corner_count;
-    if (!csg_memory_reserve(memory, (void **)&to->vertices, &to->capacity, to->count + s->count,
-                            sizeof *to->vertices) ||
-        !csg_memory_reserve(memory, (void **)&to->corners, &to->corner_capacity,
-                            to->corner_count + s->corner_count, sizeof *to->corners))
+    if (!csg_record_read_behind(memory, records, item, (void **)&to->vertices, &to->count,
+                                &to->capacity, s->count, sizeof *to->vertices) ||
+        !csg_record_read_behind(memory, records, item, (void **)&to->corners, &to->corner_count,
+                                &to->corner_capacity, s->corner_count, sizeof *to->corners))
         return false;
-    csg_record_read(records, item, to->vertices + to->count, s->count * sizeof *to->vertices);
-    csg_record_read(records, item, to->corners + to->corner_count,
-                    s->corner_count * sizeof *to->corners);
-    to->count += s->count;
-    to->corner_count += s->corner_count;
     for (size_t i = item * BRICKS_PER_ITEM; i < end_of_item(w, item); i++) {
         uint8_t wanted;
         csg_record_read(records, item, &wanted, sizeof wanted);

@@ -3,7 +3,6 @@
  */
 #include "mesh/distance/change.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,15 +44,10 @@ void csg_written_triangles_release(csg_written_triangles *triangles, csg_memory 
 
 static csg_box box_of(const csg_remesh *r, const written *triangle)
 {
-    csg_box box = {csg_vec3_make(INFINITY, INFINITY, INFINITY),
-                   csg_vec3_make(-INFINITY, -INFINITY, -INFINITY)};
-    for (int k = 0; k < 3; k++) {
-        csg_vec3 at = csg_vec3_sub(csg_vec3_from_floats(triangle->at[k]), r->marching->shift);
-        box.min =
-            csg_vec3_make(fmin(box.min.x, at.x), fmin(box.min.y, at.y), fmin(box.min.z, at.z));
-        box.max =
-            csg_vec3_make(fmax(box.max.x, at.x), fmax(box.max.y, at.y), fmax(box.max.z, at.z));
-    }
+    csg_box box = csg_box_empty();
+    for (int k = 0; k < 3; k++)
+        csg_box_extend(&box,
+                       csg_vec3_sub(csg_vec3_from_floats(triangle->at[k]), r->marching->shift));
     return box;
 }
 

@@ -4,6 +4,7 @@
 #include "mesh/distance/missed.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/rank_loop.h"
@@ -278,21 +279,20 @@ static bool make_children(const walk *w, worker *s, const cube *parent, cube *ch
 /* ---- what is the same as before ----------------------------------------------------------------
  */
 
-/* What another search found in a cube; NULL: nothing is known of that. */
-static const csg_missed_stretch *find_stretch(const csg_missed *missed, uint64_t cube_number,
-                                              uint64_t path)
+static int compare_stretches(const void *a, const void *b)
 {
-    size_t low = 0, high = missed->stretch_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        const csg_missed_stretch *at = &missed->stretches[middle];
-        if (at->cube < cube_number || (at->cube == cube_number && at->path < path))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    const csg_missed_stretch *found = low < missed->stretch_count ? &missed->stretches[low] : NULL;
-    return found && found->cube == cube_number && found->path == path ? found : NULL;
+    const csg_missed_stretch *p = a, *q = b;
+    return p->cube != q->cube ? (p->cube > q->cube) - (p->cube < q->cube)
+                              : (p->path > q->path) - (p->path < q->path);
+}
+
+/* What another search found in a cube; NULL: nothing is known of that. */
+static const csg_missed_stretch *find_stretch(const csg_missed *missed, size_t item, uint64_t path)
+{
+    const csg_missed_stretch key = {.cube = item, .path = path};
+    return missed->stretch_count ? bsearch(&key, missed->stretches, missed->stretch_count,
+                                           sizeof key, compare_stretches)
+                                 : NULL;
 }
 
 /* Whether a triangle that matters in a stretch may be another one now. */
@@ -512,17 +512,11 @@ static bool take_segment(worker *to, csg_memory *memory, csg_record_reader *read
     s->worker = 0;
     s->first = to->count;
     s->first_stretch = to->stretch_count;
-    if (!csg_memory_reserve(memory, (void **)&to->points, &to->capacity, to->count + s->count,
-                            sizeof *to->points) ||
-        !csg_memory_reserve(memory, (void **)&to->stretches, &to->stretch_capacity,
-                            to->stretch_count + s->stretch_count, sizeof *to->stretches))
-        return false;
-    to->count += s->count;
-    to->stretch_count += s->stretch_count;
-    csg_record_read(reader, record, to->points + s->first, s->count * sizeof *to->points);
-    csg_record_read(reader, record, to->stretches + s->first_stretch,
-                    s->stretch_count * sizeof *to->stretches);
-    return true;
+    return csg_record_read_behind(memory, reader, record, (void **)&to->points, &to->count,
+                                  &to->capacity, s->count, sizeof *to->points) &&
+           csg_record_read_behind(memory, reader, record, (void **)&to->stretches,
+                                  &to->stretch_count, &to->stretch_capacity, s->stretch_count,
+                                  sizeof *to->stretches);
 }
 
 /* What each rank has found in its cubes, to all: of a cube its segment, its points, its stretches.

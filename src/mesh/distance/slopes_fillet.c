@@ -127,26 +127,25 @@ static void find_sag(const walker *w, operand *pair, double parting, double fart
     pair->sag += 0.125 * bend * parting * parting;
 }
 
-/* Those that blend turn little from each other, or are planes. ends: the planes take part. */
-static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32_t count,
-                       csg_fillet_turns d, bool ends)
+/* Those that blend turn little from each other, or are planes. creases: which of them blend is not
+ * told; ends: the planes take part. */
+static bool mix_fillet(walker *w, const csg_tape_node *node, range share, csg_fillet_turns d,
+                       bool creases, bool ends)
 {
     const csg_vec3 at = w->region.c;
     const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
     operand *of = &w->stack[w->top - node->arity];
-    double r = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
-    double stray, apart = 0, farthest = INFINITY, parting = 0;
-    bool creases = may_crease(w, node); /* and which of them blend is not told */
+    uint32_t count = node->arity - node->planes;
     bool is_pair = count == 2 && !creases && !ends && (double)d.most < CSG_FILLET_FADE;
-    operand plain = of[0];
-    if (is_pair) {
-        farthest = fabs(of[0].value - of[1].value) + csg_slopes_reach(w, &of[0], &of[1]);
-        parting = csg_slopes_parting(w, &of[0], &of[1]);
-        plain.kink = fmax(of[0].kink, of[1].kink);
-        plain.sag = fmax(of[0].sag, of[1].sag);
+    double stray, apart = 0, farthest = INFINITY;
+    double kink = fmax(of[0].kink, of[1].kink), sag = fmax(of[0].sag, of[1].sag);
+    double parting = is_pair ? csg_slopes_parting(w, &of[0], &of[1]) : 0;
+    if (count == 2) {
+        double difference = fabs(of[0].value - of[1].value);
+        double reach = csg_slopes_reach(w, &of[0], &of[1]);
+        apart = difference - reach;
+        farthest = difference + reach;
     }
-    if (count == 2)
-        apart = fabs(of[0].value - of[1].value) - csg_slopes_reach(w, &of[0], &of[1]);
     if (!csg_fillet_find_stray(w->tape, node, c, w->radius, fmax(apart, 0), &stray))
         return false;
     for (uint32_t k = 1; k < count; k++)
@@ -156,8 +155,9 @@ static bool mix_fillet(walker *w, const csg_tape_node *node, range share, uint32
         of[0].balls.items[i].spread += stray;
     of[0].longest += stray;
     if (is_pair) {
-        of[0].kink = plain.kink;
-        of[0].sag = plain.sag;
+        double r = (double)w->tape->parameters[node->parameters + CSG_OPERATOR_N];
+        of[0].kink = kink;
+        of[0].sag = sag;
         find_sag(w, &of[0], parting, farthest, r, d, stray);
     }
     for (uint32_t p = count; p < node->arity && ends; p++)
@@ -180,7 +180,7 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
         return false;
     csg_fillet_turns d = csg_fillet_find_turns(w->tape, node, c, w->radius);
     range share = count == 2 ? fillet_shares(w, of, turn, r, d) : (range){0, 1};
-    bool creases = may_crease(w, node); /* and which of them blend is not told */
+    bool creases = may_crease(w, node);
     if (creases)
         share = (range){0, 1};
     bool blends = share.low < 1 && share.high > 0;
@@ -199,7 +199,7 @@ bool csg_slopes_join_fillet(walker *w, const csg_tape_node *node)
     }
     for (uint32_t i = 0; i < node->arity; i++)
         doubt = fmax(doubt, of[i].doubt);
-    if (blends ? !mix_fillet(w, node, share, count, d, takes_ends)
+    if (blends ? !mix_fillet(w, node, share, d, creases, takes_ends)
                : !csg_slopes_mix(&of[0], &of[1], share, true))
         return false;
     w->top -= node->arity - 1;

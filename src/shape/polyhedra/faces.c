@@ -273,19 +273,16 @@ typedef struct bend_survey {
     uint8_t edges[MOST_SHARP]; /* creases of the sharp ones */
 } bend_survey;
 
-static bool is_beyond(double a, double ab, double ac, float low, float high)
-{
-    double b = a + ab, c = a + ac;
-    return (a < (double)low && b < (double)low && c < (double)low) ||
-           (a > (double)high && b > (double)high && c > (double)high);
-}
-
 /* Whether a triangle's box is apart from that of all balls. */
 static bool is_off(const bend_survey *s, const csg_tree_triangle *t)
 {
-    return is_beyond(t->a.x, t->ab.x, t->ac.x, s->low[0], s->high[0]) ||
-           is_beyond(t->a.y, t->ab.y, t->ac.y, s->low[1], s->high[1]) ||
-           is_beyond(t->a.z, t->ab.z, t->ac.z, s->low[2], s->high[2]);
+    const double a[3] = {t->a.x, t->a.y, t->a.z}, ab[3] = {t->ab.x, t->ab.y, t->ab.z},
+                 ac[3] = {t->ac.x, t->ac.y, t->ac.z};
+    for (int k = 0; k < 3; k++)
+        if (csg_tree_is_outside(a[k], a[k] + ab[k], a[k] + ac[k], (double)s->low[k],
+                                (double)s->high[k]))
+            return true;
+    return false;
 }
 
 /* False: there are too many, or some that are not plain. */

@@ -141,4 +141,10 @@ typedef void csg_tree_crossing_fn(void *user, double x, int sign);
 void csg_tree_line_crossings(const csg_tree *tree, double y, double z, csg_tree_crossing_fn *take,
                              void *user);
 
+/* Whether a triangle, of which these are the coordinates along an axis, is beside that range. */
+static inline bool csg_tree_is_outside(double a, double b, double c, double low, double high)
+{
+    return (a < low && b < low && c < low) || (a > high && b > high && c > high);
+}
+
 #endif

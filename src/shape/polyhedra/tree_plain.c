@@ -137,20 +137,14 @@ typedef struct crossing_search {
     csg_box box;
 } crossing_search;
 
-/* Whether three numbers lie all below or all above a stretch. */
-static inline bool is_outside(double a, double b, double c, double low, double high)
-{
-    return (a < low && b < low && c < low) || (a > high && b > high && c > high);
-}
-
 static bool is_apart(void *user, uint32_t place)
 {
     const crossing_search *s = user;
     const csg_tree_triangle *t = &s->tree->triangles[place];
     csg_vec3 a = t->a, b = csg_vec3_add(a, t->ab), c = csg_vec3_add(a, t->ac); /* exact */
-    if (place == s->place || is_outside(a.x, b.x, c.x, s->box.min.x, s->box.max.x) ||
-        is_outside(a.y, b.y, c.y, s->box.min.y, s->box.max.y) ||
-        is_outside(a.z, b.z, c.z, s->box.min.z, s->box.max.z))
+    if (place == s->place || csg_tree_is_outside(a.x, b.x, c.x, s->box.min.x, s->box.max.x) ||
+        csg_tree_is_outside(a.y, b.y, c.y, s->box.min.y, s->box.max.y) ||
+        csg_tree_is_outside(a.z, b.z, c.z, s->box.min.z, s->box.max.z))
         return true;
     corners other = {{a, b, c}};
     return !is_crossing(&s->own, &other);
