@@ -394,6 +394,66 @@ static void test_ellipsoid_extreme(void **state)
     }
 }
 
+/* Axes with the shortest last, as they are packed; often two of them are the same, or nearly. */
+static void random_axes(csg_random *random, float own[6])
+{
+    own[2] = (float)csg_random_uniform(random, 0.2, 1);
+    for (int i = 0; i < 2; i++) {
+        double more = csg_random_uniform(random, 0, 1);
+        more = more < 0.3 ? 0 : more < 0.4 ? 1e-4 : 4 * more;
+        own[i] = own[2] * (float)(1 + more);
+        own[3 + i] = (own[i] / own[2]) * (own[i] / own[2]);
+    }
+    own[5] = 0;
+}
+
+/* Gradients in a ball, mostly inside, where it comes near to where they jump, too. shares: how
+ * much of what is claimed they reach at most, of the spread and of the bend. */
+static void check_turns(csg_random *random, const float own[6], double shares[2])
+{
+    const double v[3] = {(double)own[0], (double)own[1], (double)own[2]};
+    csg_cone_balls balls = {.count = 0};
+    csg_cone_leaf l = {.balls = &balls, .own = own, .norm = 1, .bend = INFINITY};
+    csg_vec3 n = test_direction(random);
+    double size = 1.1 * cbrt(csg_random_uniform(random, 0, 1)),
+           flat = csg_random_uniform(random, 0, 1) < 0.5 ? 0.1 : 1;
+    csg_vec3 q = {size * v[0] * n.x, size * v[1] * n.y, flat * size * v[2] * n.z};
+    l.q[0] = q.x, l.q[1] = q.y, l.q[2] = q.z;
+    l.rho = v[2] * pow(10, csg_random_uniform(random, -3, -0.3));
+    for (int k = 0; k < 3; k++)
+        l.turn[k][k] = 1;
+    if (!csg_primitive_of(CSG_NODE_ELLIPSOID)->gradients(&l))
+        return;
+    const csg_cone_ball *ball = &balls.items[0];
+    csg_vec3 middle = {ball->at[0], ball->at[1], ball->at[2]}, last = q, at_last = middle;
+    for (int i = 0; i < 12; i++) {
+        csg_vec3 way = i % 3 ? test_direction(random) : csg_vec3_make(0, 0, q.z > 0 ? -1 : 1);
+        double far = l.rho * cbrt(csg_random_uniform(random, 0, 1));
+        csg_vec3 x = csg_vec3_add(q, csg_vec3_scale(way, far));
+        csg_vec3 g = csg_reference_primitive(CSG_NODE_ELLIPSOID, v, x).gradient;
+        shares[0] = fmax(shares[0], (csg_vec3_norm(csg_vec3_sub(g, middle)) - 1e-4) / ball->spread);
+        double apart = csg_vec3_norm(csg_vec3_sub(x, last));
+        if (i && isfinite(l.bend) && apart > 1e-3 * l.rho)
+            shares[1] = fmax(shares[1],
+                             (csg_vec3_norm(csg_vec3_sub(g, at_last)) - 1e-9) / (l.bend * apart));
+        last = x;
+        at_last = g;
+    }
+}
+
+static void test_ellipsoid_turns(void **state)
+{
+    csg_random random = {9};
+    double shares[2] = {0, 0};
+    for (int i = 0; i < 20000; i++) {
+        float own[6];
+        random_axes(&random, own);
+        check_turns(&random, own, shares);
+    }
+    assert_true(shares[0] <= 1 && shares[0] > 0.8);
+    assert_true(shares[1] <= 1 && shares[1] > 0.8);
+}
+
 /* ---- a stated factor ------------------------------------------------------------------------- */
 
 /* The largest hypot(a u, b w) where |u|^p + |w|^p <= 1 (Hoelder). */
@@ -455,6 +515,7 @@ int main(void)
         cmocka_unit_test(test_torus_arc),
         cmocka_unit_test(test_ellipsoid_medial),
         cmocka_unit_test(test_ellipsoid_extreme),
+        cmocka_unit_test(test_ellipsoid_turns),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,6 @@
 #include "mesh/distance/missed.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/rank_loop.h"
@@ -37,6 +36,7 @@ enum { STRETCH_DEPTH = 3 };
 typedef struct segment {
     uint32_t worker;
     bool unfinished;
+    uint64_t effort;
     size_t first, count;
     size_t first_stretch, stretch_count;
     csg_missed_distances distances;
@@ -279,22 +279,6 @@ static bool make_children(const walk *w, worker *s, const cube *parent, cube *ch
 /* ---- what is the same as before ----------------------------------------------------------------
  */
 
-static int compare_stretches(const void *a, const void *b)
-{
-    const csg_missed_stretch *p = a, *q = b;
-    return p->cube != q->cube ? (p->cube > q->cube) - (p->cube < q->cube)
-                              : (p->path > q->path) - (p->path < q->path);
-}
-
-/* What another search found in a cube; NULL: nothing is known of that. */
-static const csg_missed_stretch *find_stretch(const csg_missed *missed, size_t item, uint64_t path)
-{
-    const csg_missed_stretch key = {.cube = item, .path = path};
-    return missed->stretch_count ? bsearch(&key, missed->stretches, missed->stretch_count,
-                                           sizeof key, compare_stretches)
-                                 : NULL;
-}
-
 /* Whether a triangle that matters in a stretch may be another one now. */
 static bool is_changed(const walk *w, const worker *s, const cube *q,
                        const csg_missed_stretch *stretch)
@@ -335,11 +319,11 @@ typedef struct known {
 static known find_known(const walk *w, const worker *s, const cube *q)
 {
     const csg_missed *in = w->begun;
-    const csg_missed_stretch *stretch = in ? find_stretch(in, s->item, q->path) : NULL;
+    const csg_missed_stretch *stretch = in ? csg_missed_find_stretch(in, s->item, q->path) : NULL;
     if (stretch || !w->before)
         return (known){in, stretch};
     in = w->before;
-    stretch = find_stretch(in, s->item, q->path);
+    stretch = csg_missed_find_stretch(in, s->item, q->path);
     return (known){in, stretch && !is_changed(w, s, q, stretch) ? stretch : NULL};
 }
 
@@ -445,6 +429,7 @@ static bool look_at_cube(void *user, uint32_t worker_index, size_t index)
         atomic_store(&w->out_of_memory, true);
         return false;
     }
+    s->segment->effort = s->cubes;
     if (!w->keeps && !s->segment->unfinished) {
         s->stretch_count = s->segment->first_stretch;
         s->segment->stretch_count = 0;
@@ -604,27 +589,58 @@ static bool gather_segments(const walk *w, csg_missed *out)
     return true;
 }
 
-/* Few cubes take much more than the others. What was found in them is not looked for twice. */
+static size_t list_unfinished(const walk *w, size_t *list)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < w->segment_count; i++)
+        if (w->segments[i].unfinished)
+            list[count++] = i;
+    return count;
+}
+
+static uint64_t efforts_of(const walk *w, const size_t *list, size_t count)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += w->segments[list[i]].effort;
+    return sum;
+}
+
+/* What was found in cubes that were not finished is not looked for twice. */
+static csgm_status look_at_unfinished(walk *w, size_t count)
+{
+    csg_missed begun = {0};
+    bool done = true;
+    for (size_t i = 0; i < count && done; i++)
+        done = gather_segment(w, &w->segments[w->again[i]], &begun);
+    w->begun = &begun;
+    csgm_status status = done ? look_at_cubes(w, count) : csg_context_no_memory(w->remesh->context);
+    w->begun = NULL;
+    csg_missed_release(&begun, w->remesh->memory);
+    return status;
+}
+
+/* Few cubes take much more than the others, and few of those more than their share of what there
+ * is: they get what these have left. */
 static csgm_status look_again(walk *w)
 {
-    csg_memory *memory = w->remesh->memory;
-    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 0;
-    csg_missed begun = {0};
-    w->again = csg_memory_alloc(memory, bytes);
-    bool done = w->again != NULL;
-    for (size_t i = 0; i < w->segment_count && done; i++) {
-        if (!w->segments[i].unfinished)
-            continue;
-        w->again[count++] = i;
-        done = gather_segment(w, &w->segments[i], &begun);
+    enum { PASSES = 3 };
+    size_t bytes = (w->segment_count + 1) * sizeof *w->again, count = 1;
+    uint64_t left = ALL_AGAIN, most = 0;
+    csgm_status status = CSGM_OK;
+    w->again = csg_memory_alloc(w->remesh->memory, bytes);
+    if (!w->again)
+        return csg_context_no_memory(w->remesh->context);
+    for (int pass = 0; pass < PASSES && count && status == CSGM_OK; pass++) {
+        count = list_unfinished(w, w->again);
+        uint64_t before = pass ? efforts_of(w, w->again, count) : 0;
+        most += left / (count + 1);
+        w->most_cubes = most < AGAIN_CUBES ? most : AGAIN_CUBES;
+        status = look_at_unfinished(w, count);
+        uint64_t more = efforts_of(w, w->again, count) - before;
+        left -= more < left ? more : left;
     }
-    w->begun = &begun;
-    uint64_t most = ALL_AGAIN / (count + 1);
-    w->most_cubes = most < AGAIN_CUBES ? most : AGAIN_CUBES;
-    csgm_status status = done ? look_at_cubes(w, count) : csg_context_no_memory(w->remesh->context);
-    csg_missed_release(&begun, memory);
-    csg_memory_release(memory, w->again, bytes);
-    w->begun = NULL;
+    csg_memory_release(w->remesh->memory, w->again, bytes);
     w->again = NULL;
     return status;
 }
@@ -668,27 +684,4 @@ csgm_status csg_missed_find(const csg_remesh *r, double error, const csg_missed_
     if (status != CSGM_OK)
         csg_missed_release(out, r->memory);
     return status;
-}
-
-void csg_missed_keep(const csg_remesh *r, csg_missed *missed, csg_missed_before *before)
-{
-    csg_missed_before_release(before, r->memory);
-    if (!csg_written_triangles_list(r, &before->triangles))
-        return;
-    before->missed = *missed;
-    *missed = (csg_missed){0};
-}
-
-void csg_missed_before_release(csg_missed_before *before, csg_memory *memory)
-{
-    csg_missed_release(&before->missed, memory);
-    csg_written_triangles_release(&before->triangles, memory);
-}
-
-void csg_missed_release(csg_missed *missed, csg_memory *memory)
-{
-    csg_memory_release(memory, missed->points, missed->capacity * sizeof *missed->points);
-    csg_memory_release(memory, missed->stretches,
-                       missed->stretch_capacity * sizeof *missed->stretches);
-    *missed = (csg_missed){0};
 }

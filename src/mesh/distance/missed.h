@@ -57,6 +57,9 @@ typedef struct csg_missed_before {
  * *out has the stretches for csg_missed_keep(), which take some MB. */
 csgm_status csg_missed_find(const csg_remesh *remesh, double error, const csg_missed_before *before,
                             bool keeps, csg_missed *out);
+/* What it found in a cube; NULL: nothing is known of that. */
+const csg_missed_stretch *csg_missed_find_stretch(const csg_missed *missed, uint64_t cube,
+                                                  uint64_t path);
 /* Keeps a search, which is taken over, in place of that before; nothing where there is no memory
  * for it. */
 void csg_missed_keep(const csg_remesh *remesh, csg_missed *missed, csg_missed_before *before);

@@ -8,7 +8,7 @@
  * function of the point, so within rho its direction turns by an angle of at most asin(rho / |u|).
  * For a torus and a tapered capsule the Hessian's largest eigenvalue is used instead (one over the
  * distance to the skeleton or to the axis), for an ellipsoid its largest curvature e_max / e_min^2,
- * which inside at depth d becomes k / (1 - k d).
+ * which inside at depth d becomes k / (1 - k d), or that depth is concave.
  *
  * Faces. Where faces meet, every gradient is a face's (minus its outward normal) or, outside,
  * minus a unit vector of the form w_1 n_1 + w_2 n_2 + ... with all w >= 0, whose sum is at least 1

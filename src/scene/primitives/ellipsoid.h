@@ -262,6 +262,29 @@ static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double 
     return steepest * way / left;
 }
 
+/* How far q is from where its nearest point is no longer the only one, along its gradient, at
+ * least: the normal there meets nothing of that before the shortest axis' middle plane. */
+static inline double csg_ellipsoid_way_in(const csg_cone_leaf *l, point g)
+{
+    static const double ROUNDING = 1e-5;
+    const float *own = l->own;
+    double far = l->q[2] * l->q[2], along = (double)g.z * (double)g.z;
+    const double n[2] = {(double)g.x, (double)g.y};
+    for (int i = 0; i < 2; i++) {
+        far += own[i] == own[2] ? l->q[i] * l->q[i] : 0;
+        along += own[i] == own[2] ? n[i] * n[i] : 0;
+    }
+    return sqrt(far) * (1 - ROUNDING) / (sqrt(along) + ROUNDING);
+}
+
+/* The depth f in a convex solid is concave, and f(q + t g) = f(q) + t as far as the way in. With g'
+ * the gradient at x that says f(q) + t <= f(x) + g' (q + t g - x), and f(x) <= f(q) + g (x - q):
+ * so g and g' are apart by no more than 2 |x - q| / t. */
+static inline double csg_ellipsoid_concave_turn(const csg_cone_leaf *l, point g)
+{
+    return 2 * l->rho / csg_ellipsoid_way_in(l, g);
+}
+
 static inline bool csg_ellipsoid_gradients(csg_cone_leaf *l)
 {
     const float *own = l->own;
@@ -271,6 +294,7 @@ static inline bool csg_ellipsoid_gradients(csg_cone_leaf *l)
     curvature /= least * least;
     double by_all = curvature * depth < 1 ? curvature / (1 - curvature * depth) : INFINITY, by_ball;
     double spread = fmin(l->rho * by_all, csg_ellipsoid_turn(l, g, value, &by_ball));
+    spread = fmin(spread, csg_ellipsoid_concave_turn(l, g));
     l->bend = fmin(by_all, by_ball);
     if (!(spread < 1.4))
         return false;
