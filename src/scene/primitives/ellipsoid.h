@@ -236,30 +236,46 @@ static inline bool csg_ellipsoid_is_clear(const csg_cone_leaf *l)
     return from > l->rho * (1 + 1e-6);
 }
 
-/* The normal of the nearest point y is along N = (y_i / e_i^2), so a turn is at most K / |N| times
- * y's way, K = 1 / e_min^2: the curvature there. Over the ball y moves no farther than s, where
- * (1 - depth K / (|N| - K s)) s = rho; along the way |N| falls by at most K s. The turn, and per
- * length between any two points; INFINITY: not known. */
+/* With A = diag(1 / e_i^2) the normal n of the nearest point y is along N = A y, so a turn is at
+ * most K / |N| times y's way, K = 1 / e_min^2: the curvature there. Over the ball y moves no
+ * farther than s where rho |N| / (|N| - depth K) <= s, and along the way |N| falls by no more than
+ * |A n - (n . A n) n| a length, which grows with n's turn by the range of A's numbers at most. The
+ * turn, and per length between any two points; INFINITY: not known. A way and a turn that their
+ * own bounds do not reach are never reached. */
 static inline double csg_ellipsoid_turn(const csg_cone_leaf *l, point g, double value, double *bend)
 {
+    enum { TRIES = 6 };
+    static const double MORE = 1.05, ROUNDING = 1e-4;
     const float *own = l->own;
     const double n[3] = {(double)g.x, (double)g.y, (double)g.z};
-    double depth = fmax(value + l->rho, 0), steepest = 1 / ((double)own[2] * (double)own[2]);
-    double square = 0;
+    double depth = fmax(value + l->rho, 0), longest = fmax((double)own[0], (double)own[1]);
+    double steepest = 1 / ((double)own[2] * (double)own[2]),
+           apart = steepest - 1 / (longest * longest);
+    double square = 0, mean = 0, squares = 0, way = 0, turn = 0;
     for (int i = 0; i < 3; i++) {
-        double along = (l->q[i] - value * n[i]) / ((double)own[i] * (double)own[i]);
+        double a = 1 / ((double)own[i] * (double)own[i]), along = (l->q[i] - value * n[i]) * a;
         square += along * along;
+        mean += a * n[i] * n[i];
+        squares += a * a * n[i] * n[i];
     }
-    double length = 0.9999 * sqrt(square), b = length + steepest * (l->rho - depth);
-    double root = b * b - 4 * steepest * l->rho * length;
+    double length = (1 - ROUNDING) * sqrt(square),
+           falls = sqrt(fmax(squares - mean * mean, 0)) + ROUNDING * steepest;
     *bend = INFINITY;
-    if (!(b > 0 && root > 0) || (depth > 0 && !csg_ellipsoid_is_clear(l)))
+    if (depth > 0 && !csg_ellipsoid_is_clear(l))
         return INFINITY;
-    double way = 2 * l->rho * length / (b + sqrt(root)), left = length - steepest * way;
-    if (!(left > 1e-3 * length && left > steepest * depth))
-        return INFINITY;
-    *bend = steepest / (left - steepest * depth);
-    return steepest * way / left;
+    for (int i = 0; i < TRIES; i++) {
+        double left = length - (falls + apart * turn) * way, clear = left - steepest * depth;
+        if (!(left > 1e-3 * length && clear > 0))
+            break;
+        double next_way = l->rho * left / clear, next_turn = steepest * next_way / left;
+        if (next_way <= way && next_turn <= turn) {
+            *bend = steepest / clear;
+            return next_turn;
+        }
+        way = MORE * next_way;
+        turn = MORE * next_turn;
+    }
+    return INFINITY;
 }
 
 /* How far q is from where its nearest point is no longer the only one, along its gradient, at
