@@ -143,12 +143,71 @@ static void sides_of_a_wall_do_not_mix(void **state)
     mesh_case_end(&c);
 }
 
+enum hollow { BY_ITSELF, BY_ONE_MOVED, BY_ONE_ROUNDED, HOLLOWS };
+
+/* Three solids that flow into each other. how: in what the second one differs from the first. */
+static csg_node_id flowing(mesh_case *c, csg_random random, enum hollow how)
+{
+    static const int SMOOTH[] = {0, 6, 7, 8};
+    double width = how == BY_ONE_ROUNDED ? 1.2 : 0.4;
+    csg_node_id all[3];
+    for (int i = 0; i < 3; i++) {
+        all[i] = make_any_primitive(c, SMOOTH[csg_random_below(&random, 4)], &random);
+        all[i] = posed_anyhow(c, all[i], &random);
+    }
+    if (how == BY_ONE_MOVED)
+        all[2] = moved(c, all[2], 0.1, 0, 0);
+    return csg_build_operator(&c->builder, CSG_NODE_UNION, ROUND(width), all, 3, NOWHERE);
+}
+
+/* A solid that is hollowed by itself, moved inwards, or by one that is nearly it. */
+static void compile_hollow(mesh_case *c, csg_random random, double wall, enum hollow how)
+{
+    csg_node_id body = flowing(c, random, BY_ITSELF), hollow = flowing(c, random, how);
+    hollow = csg_build_offset(&c->builder, -wall, hollow, NOWHERE);
+    mesh_case_compile(c, joined(c, CSG_NODE_DIFFERENCE, ROUND(0.48 * wall), body, hollow));
+}
+
+/* Its sides' gradients are known to be opposite where the solids are the same, and nowhere else. */
+static void slopes_of_hollow_solids_hold(void **state)
+{
+    csg_random random = {.state = 104};
+    uint32_t tried[HOLLOWS] = {0}, sheets[HOLLOWS] = {0}, cubes[HOLLOWS] = {0};
+    for (int i = 0; i < 90; i++) {
+        enum hollow how = (enum hollow)(i % HOLLOWS);
+        double wall = csg_random_uniform(&random, 0.05, 0.2);
+        csg_cone cone;
+        mesh_case c;
+        mesh_case_begin(&c, 1);
+        csg_random_next(&random);
+        compile_hollow(&c, random, wall, how);
+        for (int k = 0; k < 12; k++) {
+            csg_vec3 at = test_point(&random, 1);
+            double half = wall * csg_random_uniform(&random, 0.1, 0.6);
+            bool is_known = go_to_surface(c.scene, &at);
+            if (!is_known)
+                continue;
+            csg_gradients found = gradients_in_cube(c.field, at, half, &is_known);
+            if (!is_known || !found.has_level || found.exceeds)
+                continue;
+            tried[how] += try_level(c.scene, &random, at, half, &found);
+            sheets[how] += csg_cone_find_axis(&found.level, &cone);
+            cubes[how]++;
+        }
+        mesh_case_end(&c);
+    }
+    for (int i = 0; i < HOLLOWS; i++)
+        assert_true(tried[i] > 4000);
+    assert_true(3 * sheets[BY_ITSELF] > 2 * cubes[BY_ITSELF]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slopes_at_zero_hold),
         cmocka_unit_test(one_side_of_a_wall_is_a_sheet),
         cmocka_unit_test(sides_of_a_wall_do_not_mix),
+        cmocka_unit_test(slopes_of_hollow_solids_hold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,6 +61,8 @@ double csg_slopes_change(const walker *w, const operand *a, const operand *b)
 
 double csg_slopes_change_of_sum(const walker *w, const operand *a, const operand *b)
 {
+    if (csg_slopes_are_opposite(w, a, b))
+        return 0;
     if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
         return (a->longest + b->longest) * w->radius;
     return span_of_pairs(w, a, b, 1);
@@ -496,16 +498,20 @@ static bool walk(walker *w)
     for (uint32_t i = 0; i < w->tape->count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
-        if (csg_op_is_leaf(node->op))
+        if (csg_op_is_leaf(node->op)) {
+            w->nodes[w->top].first = i;
             known = push_leaf(w, node);
-        else if (csg_op_is_round(node->op))
+        } else if (csg_op_is_round(node->op)) {
             known = csg_slopes_join_round(w, node);
-        else if (csg_op_is_fillet(node->op))
+        } else if (csg_op_is_fillet(node->op)) {
             known = csg_slopes_join_fillet(w, node);
-        else if (known && csg_blend_is_rule(node->blend))
+        } else if (known && csg_blend_is_rule(node->blend)) {
             csg_slopes_end_rule(w, node);
+        }
+        w->nodes[w->top - 1].end = i + 1;
         if (!known || (node->join && !join_operands(w, node)))
             return false;
+        w->nodes[w->top - 1].end = i + 1;
     }
     return true;
 }

@@ -19,6 +19,11 @@ typedef struct csg_slopes_operand {
     bool faces;       /* gradients between the balls may be as long as these: where faces meet */
 } csg_slopes_operand;
 
+/* The tape's nodes that are an operand. */
+typedef struct csg_slopes_nodes {
+    uint32_t first, end;
+} csg_slopes_nodes;
+
 typedef struct csg_slopes_walker {
     const csg_kernel *kernel;
     const csg_tape *tape;
@@ -31,6 +36,7 @@ typedef struct csg_slopes_walker {
     float *scratch;
     size_t scratch_floats;
     csg_slopes_operand stack[CSG_SLOPES_NODES];
+    csg_slopes_nodes nodes[CSG_SLOPES_NODES]; /* of each operand on the stack */
     uint32_t top;
     csg_slopes_operand level; /* the field's gradients where it is zero, if has_level */
     bool has_level;
@@ -58,6 +64,9 @@ double csg_slopes_change(const csg_slopes_walker *w, const csg_slopes_operand *a
 /* The same of their sum. */
 double csg_slopes_change_of_sum(const csg_slopes_walker *w, const csg_slopes_operand *a,
                                 const csg_slopes_operand *b);
+/* Whether two on the stack add up to a constant wherever the tape holds. */
+bool csg_slopes_are_opposite(const csg_slopes_walker *w, const csg_slopes_operand *a,
+                             const csg_slopes_operand *b);
 /* As csg_slopes_change(), from c, with rounding. */
 double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
                         const csg_slopes_operand *b);
