@@ -179,6 +179,53 @@ static void test_pairs_of_fillets(void **state)
     }
 }
 
+/* Balls that a plane cuts off with a rounded rim, in a blend that ends at a plane itself: `lower`
+ * than theirs, or at theirs. */
+static csg_node_id cut_balls(csg_scene_builder *b, csg_random *random, double lower)
+{
+    const csg_blend sharp = {0}, soft = {CSG_BLEND_ROUND, 0.3, false};
+    const csg_vec3 up = {0, 0, 1};
+    csg_node_id balls[3], both[2];
+    for (int i = 0; i < 3; i++) {
+        csg_affine place = csg_affine_translate(
+            csg_vec3_make(1.2 * i - 1.2, csg_random_uniform(random, -0.2, 0.2), 0));
+        both[0] = csg_build_transform(b, &place, csg_build_ball(b, 0.7, NOWHERE), NOWHERE);
+        both[1] = csg_build_half_space(b, up, 0.4, NOWHERE);
+        balls[i] = csg_build_operator(b, CSG_NODE_INTERSECTION, soft, both, 2, NOWHERE);
+    }
+    both[0] = csg_build_operator(b, CSG_NODE_UNION, soft, balls, 3, NOWHERE);
+    both[1] = csg_build_half_space(b, up, 0.4 - lower, NOWHERE);
+    return csg_build_operator(b, CSG_NODE_INTERSECTION, sharp, both, 2, NOWHERE);
+}
+
+/* Where one ball is left that ends at the plane anyhow, the plane at which the blend ends is not
+ * asked; one that is lower is. */
+static void test_ends_of_blends(void **state)
+{
+    for (int k = 0; k < 4; k++) {
+        csg_random random = {test_first_seed + 28};
+        walk w = {0};
+        test_subject_begin(&w.subject);
+        csg_node_id root = cut_balls(&w.subject.builder, &random, k < 2 ? 0 : 0.01);
+        if (k % 2) { /* turned around */
+            csg_node_id both[] = {csg_build_ball(&w.subject.builder, 5, NOWHERE), root};
+            root = csg_build_operator(&w.subject.builder, CSG_NODE_DIFFERENCE, (csg_blend){0}, both,
+                                      2, NOWHERE);
+        }
+        test_subject_compile(&w.subject, root);
+        walk_begin(&w, 4);
+        csg_vec3 c = csg_vec3_sub(csg_vec3_make(1.2, 0, 0.39), w.subject.field->center);
+        const cube at = {c, 0.05};
+        csg_tape tape;
+        prune_children(&w, &w.subject.field->tape, at);
+        assert_true(csg_prune_shorten(&w.pruner, 7, 0.1f, &w.arena, &tape));
+        assert_int_equal(tape.count, k < 2 ? 3 : 5);
+        for (int i = 0; i < 20; i++)
+            descend(&w, &random, (cube){test_point(&random, 1.5), 0.5}, 0.05, "ends of blends");
+        walk_end(&w);
+    }
+}
+
 /* ---- on the threshold
  * ------------------------------------------------------------------------------ */
 
@@ -294,7 +341,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(test_random_scenes),        cmocka_unit_test(test_outlines),
         cmocka_unit_test(test_random_fillet_scenes), cmocka_unit_test(test_threshold),
         cmocka_unit_test(test_raised_extrusions),    cmocka_unit_test(test_one_of_many),
-        cmocka_unit_test(test_pairs_of_fillets),
+        cmocka_unit_test(test_pairs_of_fillets),     cmocka_unit_test(test_ends_of_blends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

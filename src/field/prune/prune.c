@@ -9,6 +9,7 @@
 #include "field/gradients/cone_fillet.h"
 #include "field/prune/prune_fields.h"
 #include "field/prune/prune_shapes.h"
+#include "field/same_leaf.h"
 #include "scene/operators/blend_kinds.h"
 
 void csg_pruner_init(csg_pruner *pruner, csg_memory *memory, const csg_kernel *kernel,
@@ -351,6 +352,49 @@ static void decide(csg_pruner *pruner, float tau)
 
 /* ---- the shorter tape ------------------------------------------------------------------------ */
 
+/* Whether a subtree is nowhere more than a plane among what it is the intersection of, sharp or
+ * rounded, which only takes off; turned around, of unions. */
+static bool ends_at(const csg_pruner *pruner, uint32_t root, const csg_tape_node *plane,
+                    bool is_union)
+{
+    const csg_tape_node *nodes = pruner->nodes, *node = &nodes[root];
+    const float *parameters = pruner->tape->parameters;
+    if (csg_op_is_leaf(node->op)) {
+        const float *p = parameters + node->parameters, *q = parameters + plane->parameters;
+        return p[CSG_LEAF_SIGMA] == q[CSG_LEAF_SIGMA] && p[CSG_LEAF_RAISE] == q[CSG_LEAF_RAISE] &&
+               csg_tape_is_same_leaf(pruner->tape, node, plane);
+    }
+    bool takes_off = node->blend == CSG_BLEND_SHARP || csg_op_is_round(node->op);
+    bool is_among = false;
+    uint32_t child = root - 1;
+    if (!takes_off || csg_op_is_union(node->op) != is_union)
+        return false;
+    for (uint32_t k = 0; k < node->arity; k++, child -= nodes[child].size)
+        is_among = is_among || ends_at(pruner, child, plane, is_union);
+    return is_among;
+}
+
+/* Planes at which blends end (CSG_FLAG_ENDED) are nothing to what is left where that ends there
+ * anyhow: a sharp join of the two would look like a crease. Returns how many subtrees are left. */
+static uint32_t drop_ends(const csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
+                          uint32_t *count, const csg_emitted *stack, uint32_t *top)
+{
+    bool is_sharp = op->op == CSG_OP_UNION || op->op == CSG_OP_INTERSECTION;
+    while (is_sharp && op->blend == CSG_BLEND_SHARP && kept > 1) {
+        const csg_tape_node *last = &pruner->nodes[*count - 1];
+        bool is_end = csg_op_is_primitive(last->op) && csg_op_has(last->op, CSG_TRAIT_LINEAR);
+        bool is_known = false;
+        for (uint32_t k = 2; k <= kept && is_end && !is_known; k++)
+            is_known = ends_at(pruner, stack[*top - k].root, last, op->op == CSG_OP_UNION);
+        if (!is_known)
+            break;
+        --*count;
+        --*top;
+        kept--;
+    }
+    return kept;
+}
+
 /* Writes an operator over the last `kept` subtrees: its joins and, unless only one is left, itself.
  */
 static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t kept,
@@ -358,6 +402,7 @@ static void emit_operator(csg_pruner *pruner, const csg_tape_node *op, uint32_t 
 {
     csg_tape_node *nodes = pruner->nodes;
     uint32_t planes = 0;
+    kept = drop_ends(pruner, op, kept, count, stack, top);
     while (op->planes && nodes[stack[*top - 1 - planes].root].is_plane)
         planes++;
     if (kept - planes == 1 && csg_prune_is_identity(pruner->tape, op)) {
