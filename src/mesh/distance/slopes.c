@@ -502,8 +502,10 @@ static bool walk(walker *w)
             known = csg_slopes_join_round(w, node);
         else if (csg_op_is_fillet(node->op))
             known = csg_slopes_join_fillet(w, node);
-        else if (known && csg_blend_is_rule(node->blend))
-            csg_slopes_end_rule(w, node);
+        else if (csg_op_delivers(node->op))
+            known = csg_slopes_deliver(w, node);
+        else if (node->op == CSG_OP_COMBINE)
+            known = csg_slopes_combine(w, node);
         if (!known || (node->join && !join_operands(w, node)))
             return false;
     }
