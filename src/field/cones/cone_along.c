@@ -287,8 +287,7 @@ static bool run_node(const csg_tape *tape, uint32_t n, const float *low, const f
         csg_rule_range at = {(double)(softens ? low[child] : a->least_value),
                              (double)(softens ? high[child] : a->largest_value)};
         csg_curve_slopes rate;
-        if (!csg_deliver_find_slopes(tape, node, at, &rate))
-            return false;
+        csg_deliver_find_slopes(tape, node, at, &rate);
         *a = scale_range(*a, rate.least, rate.most);
     }
     slope_range *made = &s->items[s->top - 1];

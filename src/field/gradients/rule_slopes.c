@@ -326,6 +326,10 @@ bool csg_join_find_slopes(const csg_tape *tape, const csg_tape_node *node, span 
         return false;
     }
     for (int k = 0; k < 2; k++) {
+        if (out->by[k].low == 0 && out->by[k].high == 0) { /* it does not count */
+            out->bend[0] = out->bend[1] = out->bend[2] = 0;
+            continue;
+        }
         double room = ROUNDING * (1 + size_of(out->by[k]));
         bool rises = !has_profile(node, own); /* with its operands */
         out->by[k].low = fmax(out->by[k].low - room, rises ? 0 : -INFINITY);
@@ -430,6 +434,8 @@ static csg_curve_slopes slopes_of_soften(const csg_tape_node *node, const float 
         out = slopes_of_falloff(node->blend, distance_of(iso, rate, high),
                                 distance_of(iso, rate, low));
     }
+    if (!(out.most > 0)) /* all beyond an end */
+        return (csg_curve_slopes){0, 0, 0};
     out.least = fmax(0, out.least - ROUNDING) * (double)rate;
     out.most = (out.most + ROUNDING) * (double)rate;
     out.bend = (out.bend + ROUNDING) * (double)rate * (double)rate;
@@ -437,30 +443,32 @@ static csg_curve_slopes slopes_of_soften(const csg_tape_node *node, const float 
 }
 
 /* dN / du of a rule for u in low..high. */
-static bool slopes_of_normal(const csg_tape_node *node, const float *own, span at,
-                             csg_curve_slopes *out)
+static csg_curve_slopes slopes_of_normal(const csg_tape_node *node, const float *own, span at)
 {
     float low = (float)at.low, high = (float)at.high;
-    *out = (csg_curve_slopes){1, 1, 0};
-    if (node->blend == CSG_BLEND_TURNING)
-        return false;
+    csg_curve_slopes out = {1, 1, 0};
+    bool is_turned = node->blend == CSG_BLEND_TURNING;
+    if (is_turned && node->arity != 1) /* its join has done it */
+        return out;
     if (node->blend == CSG_BLEND_SOFT_SET) {
         range_of_hump((hump){(double)normalise_sum(low).slope, (double)normalise_sum(high).slope,
                              at.low, at.high, 2.0 / 3, 4.0 / 3},
-                      out);
+                      &out);
         double from = fmax(at.low, 0.5), to = fmin(at.high, 1);
-        out->bend = from <= to ? fmax(fabs(16 - 24 * from), fabs(16 - 24 * to)) : 0;
-    } else if (node->blend == CSG_BLEND_SCALE_SET) {
-        float top = own[CSG_SCALE_TOP], bend = own[CSG_SCALE_BEND];
+        out.bend = from <= to ? fmax(fabs(16 - 24 * from), fabs(16 - 24 * to)) : 0;
+    } else if (node->blend == CSG_BLEND_SCALE_SET || is_turned) {
+        float lift = own[CSG_SCALE_LIFT], right = 1.0f + own[CSG_SCALE_OMEGA];
+        float top = is_turned ? top_of_turned(lift, right) : own[CSG_SCALE_TOP];
+        float bend = is_turned ? bend_of_turned(lift, right) : own[CSG_SCALE_BEND];
         bool is_full = low >= top, reaches = high >= top;
-        out->least = reaches ? 0 : (double)normalise_scale(top, bend, low).slope;
-        out->most = is_full ? 0 : 1 + 2 * (double)bend * fmax(0, (double)smaller(high, top) - 0.5);
-        out->bend = is_full ? 0 : reaches ? INFINITY : high > 0.5f ? 2 * (double)bend : 0;
+        out.least = reaches ? 0 : (double)normalise_scale(top, bend, low).slope;
+        out.most = is_full ? 0 : 1 + 2 * (double)bend * fmax(0, (double)smaller(high, top) - 0.5);
+        out.bend = is_full ? 0 : reaches ? INFINITY : high > 0.5f ? 2 * (double)bend : 0;
     }
-    out->least *= 1 - ROUNDING;
-    out->most *= 1 + ROUNDING;
-    out->bend *= 1 + ROUNDING;
-    return true;
+    out.least *= 1 - ROUNDING;
+    out.most *= 1 + ROUNDING;
+    out.bend *= 1 + ROUNDING;
+    return out;
 }
 
 static const float *delivery_of(const csg_tape *tape, const csg_tape_node *node)
@@ -469,22 +477,22 @@ static const float *delivery_of(const csg_tape *tape, const csg_tape_node *node)
     return node->op == CSG_OP_SOFTEN ? own : own + CSG_RULE_DELIVER;
 }
 
-bool csg_deliver_find_slopes(const csg_tape *tape, const csg_tape_node *node, span at,
+void csg_deliver_find_slopes(const csg_tape *tape, const csg_tape_node *node, span at,
                              csg_curve_slopes *out)
 {
     const float *own = tape->parameters + node->parameters, *delivery = delivery_of(tape, node);
     if (node->op == CSG_OP_SOFTEN)
         *out = slopes_of_soften(node, own, at);
-    else if (!slopes_of_normal(node, own, at, out))
-        return false;
-    else if (delivery[CSG_DELIVER_LOW] == 0 && at.high >= 1 && out->most > 0) {
+    else
+        *out = slopes_of_normal(node, own, at);
+    if (node->op != CSG_OP_SOFTEN && delivery[CSG_DELIVER_LOW] == 0 && at.high >= 1 &&
+        out->most > 0) {
         out->least = 0; /* a field that is cut off */
         out->bend = INFINITY;
     }
     double scale = (double)delivery[CSG_DELIVER_SCALE];
     span turned = hull_of(scale * out->least, scale * out->most);
     *out = (csg_curve_slopes){turned.low, turned.high, fabs(scale) * out->bend};
-    return true;
 }
 
 /* F of SOFTEN, or N. */

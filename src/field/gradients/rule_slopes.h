@@ -38,8 +38,8 @@ typedef struct csg_curve_slopes {
 } csg_curve_slopes;
 
 /* What a SOFTEN node or an operator on fields delivers, by the value below or by what its joins
- * have made, in `at`. False: nothing is known. */
-bool csg_deliver_find_slopes(const csg_tape *tape, const csg_tape_node *node, csg_rule_range at,
+ * have made, in `at`. */
+void csg_deliver_find_slopes(const csg_tape *tape, const csg_tape_node *node, csg_rule_range at,
                              csg_curve_slopes *out);
 double csg_deliver_value(const csg_tape *tape, const csg_tape_node *node, double at);
 

@@ -179,12 +179,19 @@ static inline curve normalise_sum(float u)
 
 /* N_S for ranges times s: m = 1 / (1 + s h) with h = r1 r2 / (r1 + r2 + sqrt(2 r1 r2 (1 - kappa))).
  */
+static inline float top_of_turned(float h, float s)
+{
+    return (1.0f - (float)CSG_SCALE_HAIR) / (1.0f + s * h);
+}
+/* 1 - m = s h / under, m - 1/2 = half / 2 under */
+static inline float bend_of_turned(float h, float s)
+{
+    float under = 1.0f + s * h, half = 1.0f - s * h;
+    return 4.0f * s * h * under / (half * half);
+}
 static inline curve normalise_turned(float h, float s, float u)
 {
-    float under = 1.0f + s * h,
-          half = 1.0f - s * h; /* 1 - m = s h / under, m - 1/2 = half / 2 under */
-    float bend = 4.0f * s * h * under / (half * half);
-    return normalise_scale((1.0f - (float)CSG_SCALE_HAIR) / under, bend, u);
+    return normalise_scale(top_of_turned(h, s), bend_of_turned(h, s), u);
 }
 
 /* ---- products (6.4) -------------------------------------------------------------------------- */

@@ -71,8 +71,8 @@ bool csg_slopes_join_round(csg_slopes_walker *w, const csg_tape_node *node);
 bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
 /* A rule, of the two operands on top of the stack: lengths, or fields. False: no bound is known. */
 bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node);
-/* What a soft node, or an operator on fields, makes of the operand on top. False: as above. */
-bool csg_slopes_deliver(csg_slopes_walker *w, const csg_tape_node *node);
+/* What a soft node, or an operator on fields, makes of the operand on top. */
+void csg_slopes_deliver(csg_slopes_walker *w, const csg_tape_node *node);
 /* Of a formula of its operands, which are on the stack. False: as above. */
 bool csg_slopes_combine(csg_slopes_walker *w, const csg_tape_node *node);
 

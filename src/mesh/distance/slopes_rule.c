@@ -69,6 +69,22 @@ static void make_plain(operand *o)
     }
 }
 
+/* The same of one that is multiplied alone: what is longer than the hull, as where faces meet, is
+ * so by weights that add up to more than 1; times a number it is no longer than its longest. */
+static void make_alone(operand *o)
+{
+    if (!csg_slopes_exceed_hull(o) || 2 * o->balls.count > CSG_CONE_MOST)
+        make_plain(o);
+}
+
+static bool is_nothing(const csg_cone_balls *balls)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < balls->count; i++)
+        most = fmax(most, csg_norm3(balls->items[i].at) + balls->items[i].spread);
+    return !(most > 0);
+}
+
 /* Times what lies in `by`: one ball where that hardly varies, else two. */
 static void multiply(csg_cone_balls *balls, range by)
 {
@@ -151,6 +167,8 @@ static double variation(const walker *w, const operand *o)
     for (int i = 0; i < 3; i++) {
         csg_vec3 side = csg_vec3_sub(v[(i + 1) % 3], v[i]);
         double length = csg_vec3_norm(side);
+        if (csg_slopes_exceed_hull(o))
+            most = fmax(most, o->longest * length);
         for (uint32_t k = 0; k < o->balls.count; k++) {
             const csg_cone_ball *ball = &o->balls.items[k];
             const csg_vec3 g = {ball->at[0], ball->at[1], ball->at[2]};
@@ -165,18 +183,27 @@ static double size_of(range a)
     return fmax(fabs(a.low), fabs(a.high));
 }
 
-/* How far operands whose own values are off move the result, and by what it is not linear by.
- * bend: sizes of second derivatives, of all pairs; by: of each operand. */
-static void find_sag(const operand *of, const range *by, const double *varies, uint32_t count,
-                     double bend[MOST_OPERANDS][MOST_OPERANDS], operand *out)
+/* By no more than that values along the triangle leave what the corners say, where only is known
+ * between what derivatives are. */
+static double parting_of(const range *by, const double *varies, uint32_t count)
 {
-    double kink = 0, sag = 0, bent = 0, parted = 0;
+    double parted = 0;
+    for (uint32_t i = 0; i < count; i++)
+        parted += 0.25 * (by[i].high - by[i].low) * varies[i];
+    return parted;
+}
+
+/* How far operands whose own values are off move the result, and by what it is not linear by, which
+ * is `parted` at most. bend: sizes of second derivatives, of all pairs; by: of each operand. */
+static void find_sag(const operand *of, const range *by, const double *varies, uint32_t count,
+                     double bend[MOST_OPERANDS][MOST_OPERANDS], double parted, operand *out)
+{
+    double kink = 0, sag = 0, bent = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (size_of(by[i]) > 0) {
             kink += size_of(by[i]) * of[i].kink;
             sag += size_of(by[i]) * of[i].sag;
         }
-        parted += 0.25 * (by[i].high - by[i].low) * varies[i];
         for (uint32_t k = 0; k < count; k++)
             if (varies[i] > 0 && varies[k] > 0)
                 bent += 0.125 * bend[i][k] * varies[i] * varies[k];
@@ -207,18 +234,17 @@ static void set_values(operand *out, const double at[5], const operand *of, cons
 /* ---- fields ------------------------------------------------------------------------------------
  */
 
-bool csg_slopes_deliver(walker *w, const csg_tape_node *node)
+void csg_slopes_deliver(walker *w, const csg_tape_node *node)
 {
     operand *o = &w->stack[w->top - 1];
     csg_curve_slopes slope;
     double at[5];
-    if (!csg_deliver_find_slopes(w->tape, node, range_of(o), &slope))
-        return false;
-    make_plain(o);
+    csg_deliver_find_slopes(w->tape, node, range_of(o), &slope);
+    make_alone(o);
     range by = {slope.least, slope.most};
     double varies = variation(w, o);
     double bend[MOST_OPERANDS][MOST_OPERANDS] = {{slope.bend}};
-    find_sag(o, &by, &varies, 1, bend, o);
+    find_sag(o, &by, &varies, 1, bend, parting_of(&by, &varies, 1), o);
     for (int k = 0; k < 5; k++)
         at[k] = csg_deliver_value(w->tape, node, csg_slopes_value(o, WHICH[k]));
     multiply(&o->balls, by);
@@ -233,7 +259,40 @@ bool csg_slopes_deliver(walker *w, const csg_tape_node *node)
     o->high = at[turns ? CSG_SLOPES_LOW : CSG_SLOPES_HIGH] + o->doubt;
     o->least = at[turns ? CSG_SLOPES_MOST : CSG_SLOPES_LEAST];
     o->most = at[turns ? CSG_SLOPES_LEAST : CSG_SLOPES_MOST];
-    return true;
+}
+
+/* Whether an operand with such a partial derivative takes part. */
+static bool counts(const operand *o, range by)
+{
+    return size_of(by) > 0 && !is_nothing(&o->balls);
+}
+
+/* The gradients of a join: one operand's alone, or sums. */
+static void join_gradients(operand *a, operand *b, const range by[2], bool is_sharp, operand *out)
+{
+    bool is_a = !counts(b, by[1]), is_b = !is_a && !counts(a, by[0]);
+    const operand *alone = is_b ? b : a;
+    if (is_a || is_b) {
+        make_alone(is_b ? b : a);
+    } else {
+        make_plain(a);
+        make_plain(b);
+    }
+    out->longest = size_of(by[is_b]) * alone->longest;
+    out->balls = alone->balls;
+    if (is_a || is_b) {
+        out->faces = alone->faces;
+        out->stretched = alone->stretched;
+        multiply(&out->balls, by[is_b]);
+    } else if (is_sharp) {
+        combine_pairs(&out->balls, &b->balls, by[0]);
+        out->longest = fmax(a->longest, b->longest);
+    } else {
+        multiply(&out->balls, by[0]);
+        multiply(&b->balls, by[1]);
+        add(&out->balls, &b->balls);
+        out->longest += size_of(by[1]) * b->longest;
+    }
 }
 
 static bool join_fields(walker *w, const csg_tape_node *node)
@@ -243,29 +302,18 @@ static bool join_fields(walker *w, const csg_tape_node *node)
     double at[5];
     if (!csg_join_find_slopes(w->tape, node, range_of(a), range_of(b), &slopes))
         return false;
-    make_plain(a);
-    make_plain(b);
     const range by[2] = {{slopes.by[0].low, slopes.by[0].high},
                          {slopes.by[1].low, slopes.by[1].high}};
     const double varies[2] = {variation(w, a), variation(w, b)};
     double bend[MOST_OPERANDS][MOST_OPERANDS] = {{slopes.bend[0], slopes.bend[1]},
                                                  {slopes.bend[1], slopes.bend[2]}};
-    operand out = {.longest = size_of(by[0]) * a->longest + size_of(by[1]) * b->longest,
-                   .doubt = size_of(by[0]) * a->doubt + size_of(by[1]) * b->doubt + ROUNDING};
+    operand out = {.doubt = size_of(by[0]) * a->doubt + size_of(by[1]) * b->doubt + ROUNDING};
     for (int k = 0; k < 5; k++)
         at[k] = csg_join_value(w->tape, node, csg_slopes_value(a, WHICH[k]),
                                csg_slopes_value(b, WHICH[k]));
-    find_sag(a, by, varies, 2, bend, &out);
+    find_sag(a, by, varies, 2, bend, parting_of(by, varies, 2), &out);
     set_values(&out, at, a, by, 2);
-    out.balls = a->balls;
-    if (node->join_blend == CSG_BLEND_FIELD_SHARP) {
-        combine_pairs(&out.balls, &b->balls, by[0]);
-        out.longest = fmax(a->longest, b->longest);
-    } else {
-        multiply(&out.balls, by[0]);
-        multiply(&b->balls, by[1]);
-        add(&out.balls, &b->balls);
-    }
+    join_gradients(a, b, by, node->join_blend == CSG_BLEND_FIELD_SHARP, &out);
     *a = out;
     w->top--;
     return true;
@@ -323,14 +371,9 @@ static bool join_lengths(walker *w, const csg_tape_node *node)
         at[i] = turn * csg_rule_apply(&rule, true, values, 2, 0, partials);
     }
     set_values(&out, at, a, by, 2);
-    for (int i = 0; i < 2; i++) {
-        const operand *o = i ? b : a;
-        if (size_of(by[i]) > 0) {
-            out.kink += size_of(by[i]) * o->kink;
-            out.sag += size_of(by[i]) * o->sag;
-        }
-    }
-    out.kink += parted;
+    double bend[MOST_OPERANDS][MOST_OPERANDS] = {{INFINITY, INFINITY}, {INFINITY, INFINITY}};
+    const double varies[2] = {variation(w, a), variation(w, b)};
+    find_sag(a, by, varies, 2, bend, parted, &out);
     out.balls = a->balls;
     combine_pairs(&out.balls, &b->balls, by[0]);
     *a = out;
@@ -373,29 +416,91 @@ static range change_of(const range *by, double (*farther)[2], uint32_t count)
     return all;
 }
 
-bool csg_slopes_combine(walker *w, const csg_tape_node *node)
+/* The derivatives of the result by its operands, `times` those of the formula, within what their
+ * sizes add up to. False: nothing is known. */
+static bool find_shares(const walker *w, const csg_tape_node *node, const csg_cone_box *at,
+                        double times, range by[MOST_OPERANDS], bool *has_edges)
 {
     static const csg_cone_box UNITS[3] = {
         {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}}};
-    const float *own = w->tape->parameters + node->parameters;
     const csg_tape_formula *formula = csg_tape_formula_of(w->tape, node);
-    operand *of = &w->stack[w->top - node->arity];
+    double most = fabs(times) * (double)formula->lipschitz;
     csg_cone_box shares;
+    if (!csg_cone_formula(w->tape, formula, at, UNITS, &shares, has_edges))
+        return false;
+    for (uint32_t k = 0; k < node->arity; k++) {
+        double low = times * (double)shares.low[k], high = times * (double)shares.high[k];
+        double room = 1e-6 * fmax(fabs(low), fabs(high));
+        by[k] = (range){fmax(fmin(low, high) - room, -most), fmin(fmax(low, high) + room, most)};
+    }
+    return true;
+}
+
+/* Whether the result moves with its first two operands, where both move alike, as blends do that
+ * depend on their difference: then their derivatives add up to the same everywhere. *share: that of
+ * the first one; sizes add up to `most`. */
+static bool find_pair(const walker *w, const csg_tape_node *node, const csg_cone_box *at,
+                      double times, const range by[2], double *sum, range *share)
+{
+    static const csg_cone_box ALIKE[3] = {
+        {{1, 0, 0}, {1, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+    static const double SAME = 1e-5;
+    const csg_tape_formula *formula = csg_tape_formula_of(w->tape, node);
+    csg_cone_box along;
+    bool has_edges = false;
+    if (node->arity < 2 || !csg_cone_formula(w->tape, formula, at, ALIKE, &along, &has_edges))
+        return false;
+    double low = (double)along.low[0], high = (double)along.high[0];
+    if (!(low > 0) || high - low > SAME * low)
+        return false;
+    *sum = 0.5 * times * (low + high);
+    double k = fabs(times) * (double)formula->lipschitz / fabs(*sum);
+    range first = {by[0].low / *sum, by[0].high / *sum};
+    range other = {1 - by[1].high / *sum, 1 - by[1].low / *sum};
+    share->low =
+        fmax(fmax(fmin(first.low, first.high), fmin(other.low, other.high)), 0.5 - 0.5 * k);
+    share->high =
+        fmin(fmin(fmax(first.low, first.high), fmax(other.low, other.high)), 0.5 + 0.5 * k);
+    share->high = fmax(share->low, share->high) + SAME;
+    share->low -= SAME;
+    return true;
+}
+
+/* The sum of all operands' gradients, of a pair as mixtures. */
+static void combine_gradients(operand *of, const range *by, uint32_t count, bool is_pair,
+                              double sum, range share)
+{
+    uint32_t next = 1;
+    if (is_pair) {
+        combine_pairs(&of[0].balls, &of[1].balls, share);
+        multiply(&of[0].balls, (range){sum, sum});
+        next = 2;
+    } else {
+        multiply(&of[0].balls, by[0]);
+    }
+    for (uint32_t k = next; k < count; k++) {
+        multiply(&of[k].balls, by[k]);
+        add(&of[0].balls, &of[k].balls);
+    }
+}
+
+bool csg_slopes_combine(walker *w, const csg_tape_node *node)
+{
+    const float *own = w->tape->parameters + node->parameters;
+    operand *of = &w->stack[w->top - node->arity];
+    range by[MOST_OPERANDS], share;
     bool has_edges = false;
     if (node->arity > MOST_OPERANDS)
         return false;
     double scale = (double)own[CSG_LEAF_FRAME], times = scale * (double)own[CSG_LEAF_SIGMA];
     const csg_cone_box at = place_operands(of, node->arity, scale);
-    if (!csg_cone_formula(w->tape, formula, &at, UNITS, &shares, &has_edges))
+    if (!find_shares(w, node, &at, times, by, &has_edges))
         return false;
-    range by[MOST_OPERANDS];
-    double varies[MOST_OPERANDS], near[MOST_OPERANDS][2], far[MOST_OPERANDS][2], norm = INFINITY;
-    double bend[MOST_OPERANDS][MOST_OPERANDS] = {{0}};
+    double varies[MOST_OPERANDS], near[MOST_OPERANDS][2], far[MOST_OPERANDS][2];
+    double bend[MOST_OPERANDS][MOST_OPERANDS] = {{0}}, norm = INFINITY, sum = 0, parted = 0;
+    bool is_pair = find_pair(w, node, &at, times, by, &sum, &share);
     operand out = {.longest = 0, .doubt = 0};
     for (uint32_t k = 0; k < node->arity; k++) {
-        double low = times * (double)shares.low[k], high = times * (double)shares.high[k];
-        double room = 1e-6 * fmax(fabs(low), fabs(high));
-        by[k] = (range){fmin(low, high) - room, fmax(low, high) + room};
         csg_rule_range all = range_of(&of[k]);
         near[k][0] = of[k].low - of[k].value;
         near[k][1] = of[k].high - of[k].value;
@@ -406,17 +511,18 @@ bool csg_slopes_combine(walker *w, const csg_tape_node *node)
         out.longest += size_of(by[k]) * of[k].longest;
         out.doubt += size_of(by[k]) * of[k].doubt;
     }
-    /* no entry of a matrix is larger than its norm, nor is a quadratic form than it times squares
-     */
-    if (!has_edges && csg_bend_formula(w->tape, formula, &at, &norm))
+    if (!has_edges && csg_bend_formula(w->tape, csg_tape_formula_of(w->tape, node), &at, &norm))
         norm *= scale * scale * fabs((double)own[CSG_LEAF_SIGMA]);
-    for (uint32_t k = 0; k < node->arity; k++)
+    for (uint32_t k = 0; k < node->arity;
+         k++) /* a quadratic form is no more than it times squares */
         bend[k][k] = norm;
-    find_sag(of, by, varies, node->arity, bend, &out);
-    for (uint32_t k = 0; k < node->arity; k++)
-        multiply(&of[k].balls, by[k]);
-    for (uint32_t k = 1; k < node->arity; k++)
-        add(&of[0].balls, &of[k].balls);
+    if (is_pair)
+        parted =
+            0.25 * fabs(sum) * (share.high - share.low) * csg_slopes_parting(w, &of[0], &of[1]);
+    uint32_t rest = is_pair ? 2 : 0;
+    parted += parting_of(by + rest, varies + rest, node->arity - rest);
+    find_sag(of, by, varies, node->arity, bend, parted, &out);
+    combine_gradients(of, by, node->arity, is_pair, sum, share);
     out.balls = of[0].balls;
     out.value = csg_slopes_value_of_node(w, node);
     out.doubt += 1e-6 * (fabs(out.value) + fabs((double)own[CSG_LEAF_RAISE]));
