@@ -52,16 +52,37 @@ static void gather(csg_cone_balls *balls)
     balls->count = 1;
 }
 
-/* An operand's gradients as a few balls whose hull holds them: where these are no hull, one around
- * the axis that they have in common, or else around 0. */
+/* Combinations by weights that add up to 1 and more, none of them longer than `longest`: along an
+ * axis that all climb by `least` each weight is paid for, so they add up to longest / least at
+ * most, and those are in the hull of the balls and of these so much longer. False: too many, or no
+ * axis. */
+static bool lengthen(csg_cone_balls *balls, double longest)
+{
+    csg_cone cone;
+    if (2 * balls->count > FEW_BALLS || !csg_cone_find_axis(balls, &cone))
+        return false;
+    double times = fmax(1, longest / (0.999 * cone.least));
+    for (uint32_t i = 0, count = balls->count; i < count; i++) {
+        csg_cone_ball *out = &balls->items[balls->count++];
+        for (int k = 0; k < 3; k++)
+            out->at[k] = times * balls->items[i].at[k];
+        out->spread = times * balls->items[i].spread;
+    }
+    return true;
+}
+
+/* An operand's gradients as a few balls whose hull holds them: where these are no hull, of two also
+ * longer ones, or one around the axis that they have in common, or else around 0. */
 static void make_plain(operand *o)
 {
     if (csg_slopes_exceed_hull(o)) {
         csg_cone_ball one;
-        if (!csg_slopes_enclose(&o->balls, o->longest, &one))
-            one = (csg_cone_ball){.at = {0, 0, 0}, .spread = o->longest};
-        o->balls.items[0] = one;
-        o->balls.count = 1;
+        if (!lengthen(&o->balls, o->longest)) {
+            if (!csg_slopes_enclose(&o->balls, o->longest, &one))
+                one = (csg_cone_ball){.at = {0, 0, 0}, .spread = o->longest};
+            o->balls.items[0] = one;
+            o->balls.count = 1;
+        }
         o->balls.corner = 0;
         o->balls.has_edges = o->stretched = o->faces = false;
     } else if (o->balls.count > FEW_BALLS) {
