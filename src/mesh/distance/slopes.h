@@ -31,7 +31,7 @@
 #include "field/cones/cone.h"
 #include "field/kernels/kernel.h"
 
-enum { CSG_SLOPES_NODES = 48 /* of a tape; more are not looked at */ };
+enum { CSG_SLOPES_NODES = 128 /* of a tape; more are not looked at */ };
 
 /* What is within `around` of the convex hull of a triangle and a point c, or in a cube of that half
  * edge along the axes around a place that is. */
