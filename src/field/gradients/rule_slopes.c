@@ -442,28 +442,64 @@ static csg_curve_slopes slopes_of_soften(const csg_tape_node *node, const float 
     return out;
 }
 
+/* What brings an operator's field back to 0..1. */
+typedef enum normal { NORMAL_NONE, NORMAL_SUM, NORMAL_SCALE } normal;
+
+/* top, bend: of N_S (soft_formulas.h). */
+static normal normal_of(const csg_tape_node *node, const float *own, float *top, float *bend)
+{
+    const float lift = own[CSG_SCALE_LIFT], right = 1.0f + own[CSG_SCALE_OMEGA];
+    switch ((csg_blend_kind)node->blend) {
+    case CSG_BLEND_SOFT_SET:
+        return NORMAL_SUM;
+    case CSG_BLEND_SCALE_SET:
+        *top = own[CSG_SCALE_TOP];
+        *bend = own[CSG_SCALE_BEND];
+        return NORMAL_SCALE;
+    case CSG_BLEND_END: /* TURNING: of two its join has done it, one alone turns by a right angle */
+        *top = top_of_turned(lift, right);
+        *bend = bend_of_turned(lift, right);
+        return node->arity == 1 ? NORMAL_SCALE : NORMAL_NONE;
+    case CSG_BLEND_SOFT_SUM:
+    case CSG_BLEND_RICCI:
+    case CSG_BLEND_PERLIN:
+    case CSG_BLEND_ARC:
+    case CSG_BLEND_ARC_SHARP:
+    case CSG_BLEND_FIELD_SHARP:
+    case CSG_BLEND_EXTERIOR:
+    case CSG_BLEND_INTERIOR:
+    case CSG_BLEND_PROFILE:
+    case CSG_BLEND_ORTHOGONAL:
+#define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
+    case CSG_BLEND_##NAME:
+#include "scene/operators/operators.def"
+        break;
+    }
+    return NORMAL_NONE;
+}
+
 /* dN / du of a rule for u in low..high. */
 static csg_curve_slopes slopes_of_normal(const csg_tape_node *node, const float *own, span at)
 {
-    float low = (float)at.low, high = (float)at.high;
+    float low = (float)at.low, high = (float)at.high, top, bend;
     csg_curve_slopes out = {1, 1, 0};
-    bool is_turned = node->blend == CSG_BLEND_TURNING;
-    if (is_turned && node->arity != 1) /* its join has done it */
+    switch (normal_of(node, own, &top, &bend)) {
+    case NORMAL_NONE:
         return out;
-    if (node->blend == CSG_BLEND_SOFT_SET) {
+    case NORMAL_SUM:
         range_of_hump((hump){(double)normalise_sum(low).slope, (double)normalise_sum(high).slope,
                              at.low, at.high, 2.0 / 3, 4.0 / 3},
                       &out);
         double from = fmax(at.low, 0.5), to = fmin(at.high, 1);
         out.bend = from <= to ? fmax(fabs(16 - 24 * from), fabs(16 - 24 * to)) : 0;
-    } else if (node->blend == CSG_BLEND_SCALE_SET || is_turned) {
-        float lift = own[CSG_SCALE_LIFT], right = 1.0f + own[CSG_SCALE_OMEGA];
-        float top = is_turned ? top_of_turned(lift, right) : own[CSG_SCALE_TOP];
-        float bend = is_turned ? bend_of_turned(lift, right) : own[CSG_SCALE_BEND];
+        break;
+    case NORMAL_SCALE: {
         bool is_full = low >= top, reaches = high >= top;
         out.least = reaches ? 0 : (double)normalise_scale(top, bend, low).slope;
         out.most = is_full ? 0 : 1 + 2 * (double)bend * fmax(0, (double)smaller(high, top) - 0.5);
         out.bend = is_full ? 0 : reaches ? INFINITY : high > 0.5f ? 2 * (double)bend : 0;
+        break;
+    }
     }
     out.least *= 1 - ROUNDING;
     out.most *= 1 + ROUNDING;
@@ -512,9 +548,16 @@ static float field_at(const csg_tape_node *node, const float *own, float v)
             return clamped(0.5f + rate * v).value;
         }
     }
-    if (node->blend == CSG_BLEND_SCALE_SET)
-        return normalise_scale(own[CSG_SCALE_TOP], own[CSG_SCALE_BEND], v).value;
-    return node->blend == CSG_BLEND_SOFT_SET ? normalise_sum(v).value : v;
+    float top, bend;
+    switch (normal_of(node, own, &top, &bend)) {
+    case NORMAL_SUM:
+        return normalise_sum(v).value;
+    case NORMAL_SCALE:
+        return normalise_scale(top, bend, v).value;
+    case NORMAL_NONE:
+        break;
+    }
+    return v;
 }
 
 double csg_deliver_value(const csg_tape *tape, const csg_tape_node *node, double at)
