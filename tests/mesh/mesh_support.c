@@ -145,6 +145,16 @@ void mesh_assert_same_by(const mesh_case *a, csg_node_id make(mesh_case *c),
     mesh_case_end(&b);
 }
 
+double mesh_beyond_hull(const csg_cone_balls *balls, csg_vec3 g, csg_vec3 u)
+{
+    double most = -INFINITY;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        most = fmax(most, u.x * ball->at[0] + u.y * ball->at[1] + u.z * ball->at[2] + ball->spread);
+    }
+    return csg_vec3_dot(g, u) - most;
+}
+
 csg_node_id make_sphere(mesh_case *c, double r)
 {
     return csg_build_primitive(&c->builder, CSG_NODE_SPHERE, &r, NOWHERE);

@@ -6,6 +6,7 @@
 #define TEST_MESH_SUPPORT_H
 
 #include "base/pool.h"
+#include "field/cones/cone.h"
 #include "field/kernels/dispatch.h"
 #include "mesh/inspect.h"
 #include "mesh/pipeline/parts.h"
@@ -46,6 +47,9 @@ void mesh_assert_same(const csgm_mesh *a, const csgm_mesh *b, const char *what);
 /* The mesh of the same scene by so many threads and, unless it is AUTO, that instruction set. */
 void mesh_assert_same_by(const mesh_case *a, csg_node_id make(mesh_case *c),
                          const csgm_mesh_options *options, uint32_t threads, csgm_isa isa);
+
+/* By how much a gradient is farther along u than the balls' hull is. */
+double mesh_beyond_hull(const csg_cone_balls *balls, csg_vec3 g, csg_vec3 u);
 
 /* ---- scenes in short ----------------------------------------------------------------------- */
 

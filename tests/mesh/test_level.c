@@ -36,17 +36,6 @@ static bool go_to_surface(const csgm_scene *scene, csg_vec3 *p)
     return fabs(test_sample(scene, *p).value) <= 1e-9;
 }
 
-/* By how much a gradient is farther along u than the balls' hull is. */
-static double beyond_hull(const csg_cone_balls *balls, csg_vec3 g, csg_vec3 u)
-{
-    double most = -INFINITY;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const csg_cone_ball *ball = &balls->items[i];
-        most = fmax(most, u.x * ball->at[0] + u.y * ball->at[1] + u.z * ball->at[2] + ball->spread);
-    }
-    return csg_vec3_dot(g, u) - most;
-}
-
 /* From random places of the cube to the surface: where they end in it gradients are in the hull of
  * those at zero, which is tried in many directions. Returns how many did. */
 static uint32_t try_level(const csgm_scene *scene, csg_random *random, csg_vec3 at, double half,
@@ -62,7 +51,7 @@ static uint32_t try_level(const csgm_scene *scene, csg_random *random, csg_vec3 
         if (!is_there || !(fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= half))
             continue;
         for (int k = 0; k < TRIES; k++) {
-            double beyond = beyond_hull(&found->level, g, test_direction(random));
+            double beyond = mesh_beyond_hull(&found->level, g, test_direction(random));
             if (beyond > 1e-3)
                 fail_msg("a gradient where the field is zero is %g outside, near (%g, %g, %g) "
                          "within %g",

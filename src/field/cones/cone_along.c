@@ -18,7 +18,8 @@
 #include <math.h>
 
 #include "field/gradients/cone_formula.h"
-#include "field/kernels/soft_formulas.h"
+#include "field/gradients/rule_slopes.h"
+#include "field/kernels/functions.h"
 #include "field/prune/prune.h"
 #include "field/rule_layout.h"
 #include "field/turning.h"
@@ -125,24 +126,12 @@ static slope_range multiply(slope_range a, slope_range b, bool is_union)
     return r;
 }
 
-/* G at operands x, y. */
-static float homogeneous_at(const csg_tape_node *node, const float *own, float x, float y)
-{
-    bool is_union = node->join == CSG_JOIN_UNION;
-    if (node->join_blend == CSG_BLEND_RICCI)
-        return is_union ? ricci_union(own[CSG_RICCI_EXPONENT], x, y).value
-                        : ricci_intersection(own[CSG_RICCI_EXPONENT], x, y).value;
-    if (node->join_blend == CSG_BLEND_SCALE_SET)
-        return scale(own[CSG_SCALE_R1], own[CSG_SCALE_R2], own[CSG_SCALE_KAPPA], x, y).value;
-    return is_union ? arc_union(own[CSG_ARC_A], own[CSG_ARC_B], x, y).value
-                    : arc_intersection(own[CSG_ARC_A], own[CSG_ARC_B], x, y).value;
-}
-
-static void mix_homogeneous(const csg_tape_node *node, const float *own, slope_range *a,
+static void mix_homogeneous(const csg_tape *tape, const csg_tape_node *node, slope_range *a,
                             slope_range b)
 {
-    float low = homogeneous_at(node, own, a->least_value, b.least_value);
-    float high = homogeneous_at(node, own, a->largest_value, b.largest_value);
+    float low = (float)csg_join_value(tape, node, (double)a->least_value, (double)b.least_value);
+    float high =
+        (float)csg_join_value(tape, node, (double)a->largest_value, (double)b.largest_value);
     double most = (double)larger(a->largest_value, b.largest_value);
     double least = (double)smaller(a->least_value, b.least_value);
     bool grows = node->join == CSG_JOIN_UNION && node->join_blend != CSG_BLEND_SCALE_SET;
@@ -191,11 +180,11 @@ static bool join_slopes(const csg_tape *tape, const csg_tape_node *node, slope_r
     case CSG_BLEND_ARC:
         if (own[CSG_ARC_KNOTS] > 0)
             return false; /* a profile bends it both ways */
-        mix_homogeneous(node, own, a, b);
+        mix_homogeneous(tape, node, a, b);
         return true;
     case CSG_BLEND_RICCI:
     case CSG_BLEND_SCALE_SET:
-        mix_homogeneous(node, own, a, b);
+        mix_homogeneous(tape, node, a, b);
         return true;
 #define CSG_BLEND(NAME, name, area, raw, support, excess, smooth, convex, doc)                     \
     case CSG_BLEND_##NAME:
@@ -210,119 +199,8 @@ static bool join_slopes(const csg_tape *tape, const csg_tape_node *node, slope_r
     return false;
 }
 
-/* ---- deliveries -------------------------------------------------------------------------------
+/* ---- combine ----------------------------------------------------------------------------------
  */
-
-/* Of a function whose slope rises to one place and falls again. */
-typedef struct hump {
-    double from, to;               /* slopes at the ends */
-    double low, high, top, at_top; /* the range of the argument; where the slope is largest */
-} hump;
-
-static void range_of_hump(hump h, double *low, double *high)
-{
-    *low = least_of(h.from, h.to);
-    *high = largest_of(h.from, h.to);
-    if (h.low <= h.top && h.top <= h.high)
-        *high = largest_of(*high, h.at_top);
-}
-
-/* -P'(d) for d in low..high within 0..1. */
-static void slopes_of_falloff(uint8_t curve_kind, float low, float high, double *least,
-                              double *most)
-{
-    hump h = {.low = (double)low, .high = (double)high};
-    switch ((csg_tape_curve)curve_kind) {
-#define CSG_FALLOFF(NAME, name, iso, steepest, steepest_at, doc)                                   \
-    case CSG_CURVE_##NAME:                                                                         \
-        h.from = -(double)falloff_##name(low).slope;                                               \
-        h.to = -(double)falloff_##name(high).slope;                                                \
-        h.at_top = (double)(steepest) + 1e-5;                                                      \
-        h.top = steepest_at;                                                                       \
-        break;
-#include "scene/operators/falloffs.def"
-#undef CSG_FALLOFF
-    case CSG_CURVE_STEP:
-    case CSG_CURVE_CLAMP:
-        break;
-    }
-    h.low -= 1e-4;
-    h.high += 1e-4;
-    range_of_hump(h, least, most);
-}
-
-/* dF / dv of SOFTEN for v in low..high. */
-static void slopes_of_soften(const csg_tape_node *node, const float *own, float low, float high,
-                             double *least, double *most)
-{
-    float rate = own[CSG_SOFTEN_RATE], iso = own[CSG_SOFTEN_ISO];
-    if (node->blend == CSG_CURVE_CLAMP) {
-        float from = 0.5f + rate * low, to = 0.5f + rate * high;
-        *least = from > 1e-6f && to < 1 - 1e-6f ? 1 : 0;
-        *most = to >= 0 && from <= 1 ? 1 : 0;
-    } else if (node->blend == CSG_CURVE_STEP) {
-        float from = larger(smaller(rate * low, 1.0f), -1.0f);
-        float to = larger(smaller(rate * high, 1.0f), -1.0f);
-        hump h = {(double)step_cubic(from).slope,
-                  (double)step_cubic(to).slope,
-                  (double)from,
-                  (double)to,
-                  0,
-                  1.125};
-        range_of_hump(h, least, most);
-    } else {
-        float near = larger(smaller(iso - rate * high, 1.0f), 0);
-        float far = larger(smaller(iso - rate * low, 1.0f), 0);
-        slopes_of_falloff(node->blend, near, far, least, most);
-    }
-    *least = largest_of(0, *least - 1e-5) * (double)rate;
-    *most = (*most + 1e-5) * (double)rate;
-}
-
-/* dN / du of a rule for u in low..high. */
-static bool slopes_of_normal(const csg_tape_node *node, const float *own, float low, float high,
-                             double *least, double *most)
-{
-    *least = *most = 1;
-    if (node->blend == CSG_BLEND_TURNING)
-        return false;
-    if (node->blend == CSG_BLEND_SOFT_SET) {
-        hump h = {(double)normalise_sum(low).slope,
-                  (double)normalise_sum(high).slope,
-                  (double)low,
-                  (double)high,
-                  2.0 / 3,
-                  4.0 / 3};
-        range_of_hump(h, least, most);
-    } else if (node->blend == CSG_BLEND_SCALE_SET) {
-        float top = own[CSG_SCALE_TOP], bend = own[CSG_SCALE_BEND];
-        *least = high >= top ? 0 : (double)normalise_scale(top, bend, low).slope;
-        *most =
-            low >= top ? 0 : 1 + 2 * (double)bend * largest_of(0, (double)smaller(high, top) - 0.5);
-    }
-    *least *= 1 - 1e-5;
-    *most *= 1 + 1e-5;
-    return true;
-}
-
-/* The function's slope, the scale, and 0 where a field is cut off. */
-static bool deliver(const csg_tape *tape, const csg_tape_node *node, slope_range *a, float low,
-                    float high)
-{
-    const float *own = tape->parameters + node->parameters;
-    bool softens = node->op == CSG_OP_SOFTEN;
-    const float *delivery = softens ? own : own + CSG_RULE_DELIVER;
-    double least, most, scale = (double)delivery[CSG_DELIVER_SCALE];
-    if (softens)
-        slopes_of_soften(node, own, low, high, &least, &most);
-    else if (!slopes_of_normal(node, own, a->least_value, a->largest_value, &least, &most))
-        return false;
-    if (!softens && delivery[CSG_DELIVER_LOW] == 0 && a->largest_value >= 1)
-        least = 0;
-    *a = scale_range(*a, least, most);
-    *a = scale_range(*a, scale, scale);
-    return true;
-}
 
 /* The values of the operands of a combine node. False: more than three, or mirrored. */
 static bool operands_of(const csg_tape *tape, const csg_tape_node *node, const float *low,
@@ -403,9 +281,14 @@ static bool run_node(const csg_tape *tape, uint32_t n, const float *low, const f
         if (!combine(tape, node, low, high, s, has_edges))
             return false;
     } else if (csg_op_delivers(node->op)) {
+        slope_range *a = &s->items[s->top - 1];
         size_t child = (size_t)(n - 1) * CSG_OCTANTS;
-        if (!deliver(tape, node, &s->items[s->top - 1], low[child], high[child]))
-            return false;
+        bool softens = node->op == CSG_OP_SOFTEN;
+        csg_rule_range at = {(double)(softens ? low[child] : a->least_value),
+                             (double)(softens ? high[child] : a->largest_value)};
+        csg_curve_slopes rate;
+        csg_deliver_find_slopes(tape, node, at, &rate);
+        *a = scale_range(*a, rate.least, rate.most);
     }
     slope_range *made = &s->items[s->top - 1];
     made->least_value = low[(size_t)n * CSG_OCTANTS];

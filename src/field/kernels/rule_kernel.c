@@ -23,20 +23,6 @@
 /* ---- soft nodes and deliveries ----------------------------------------------------------------
  */
 
-/* 1/2 + rate v in [0, 1]; what is nearly 0 or 1 comes from a field that was just that. */
-static inline curve clamped(float f)
-{
-    const float hair = 0x1p-22f;
-    int inside = (f > hair) & (f < 1.0f - hair);
-    float end = f > 0.5f ? 1.0f : 0.0f;
-    return (curve){inside ? f : end, inside ? 1.0f : 0.0f};
-}
-
-static inline float distance_of(float iso, float rate, float v)
-{
-    return larger(smaller(iso - rate * v, 1.0f), 0); /* NaN is outside */
-}
-
 #define SOFTEN_LOOP(expression, factor)                                                            \
     for (size_t i = 0; i < count; i++) {                                                           \
         const float v = values[i];                                                                 \
@@ -197,17 +183,6 @@ static inline mixture sum_of(float x, float y)
 {
     return (mixture){x + y, 1.0f, 1.0f};
 }
-static inline mixture field_union(float x, float y)
-{
-    float first = x > y ? 1.0f : 0.0f;
-    return (mixture){larger(x, y), first, 1.0f - first};
-}
-static inline mixture field_intersection(float x, float y)
-{
-    float first = x < y ? 1.0f : 0.0f;
-    return (mixture){smaller(x, y), first, 1.0f - first};
-}
-
 /* What plain joins are not: sums, blends of lengths, and TURNING (CSG_BLEND_END). */
 #define CASES_OF_OTHERS                                                                            \
     case CSG_BLEND_SOFT_SUM:                                                                       \
@@ -307,20 +282,13 @@ static int has_profile(const csg_tape_node *node, const float *parameters)
     return node->join_blend == CSG_BLEND_ARC && parameters[CSG_ARC_KNOTS] > 0;
 }
 
-/* One stretch's part of the factor: what it rises between its knots and where the angle is. */
 static void add_stretch(const float *stretch, const float *restrict angle, float *restrict factor,
                         float *restrict slope, size_t count)
 {
-    const float start = stretch[CSG_STRETCH_ANGLE], inverse = stretch[CSG_STRETCH_INVERSE];
-    const float rise = stretch[CSG_STRETCH_RISE], first = stretch[CSG_STRETCH_SLOPE];
-    const float last = stretch[CSG_STRETCH_NEXT_SLOPE];
     for (size_t i = 0; i < count; i++) {
-        float s = smaller(larger((angle[i] - start) * inverse, 0), 1.0f), z = 1.0f - s;
-        factor[i] +=
-            rise * (s * s * (3.0f - 2.0f * s)) + first * (s * (z * z)) - last * (s * s * z);
-        float steep = rise * (6.0f * s * z) + first * (z * (1.0f - 3.0f * s)) +
-                      last * (s * (3.0f * s - 2.0f));
-        slope[i] += (s > 0) & (s < 1.0f) ? inverse * steep : 0;
+        curve part = profile_part(stretch, angle[i]);
+        factor[i] += part.value;
+        slope[i] += part.slope;
     }
 }
 

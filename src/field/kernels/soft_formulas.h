@@ -29,23 +29,28 @@ typedef struct curve {
 } curve;
 
 /* ---- field functions P(d), s = d^2: value and dP/dd (operators.md 4) --------------------------
- * In factors, so that the end at d = 1 keeps its digits; beyond it exactly 0. */
+ * In factors, so that the end at d = 1 keeps its digits; beyond it exactly 0. bend_of_: the
+ * coefficients of 1, s, s^2 in the second derivative before that. */
 
+static const float bend_of_sextic[3] = {-44.0f / 9, 68.0f / 3, -40.0f / 3};
 static inline curve falloff_sextic(float d)
 {
     float s = d * d, u = larger(1.0f - s, 0);
     return (curve){(u * u) * (1.0f - (4.0f / 9) * s), d * u * ((8.0f / 3) * s - 44.0f / 9)};
 }
+static const float bend_of_cubic[3] = {-6, 36, -30};
 static inline curve falloff_cubic(float d)
 {
     float u = larger(1.0f - d * d, 0);
     return (curve){u * u * u, -6.0f * d * (u * u)};
 }
+static const float bend_of_quartic[3] = {-4, 12, 0};
 static inline curve falloff_quartic(float d)
 {
     float u = larger(1.0f - d * d, 0);
     return (curve){u * u, -4.0f * d * u};
 }
+static const float bend_of_quadratic[3] = {-2, 0, 0};
 static inline curve falloff_quadratic(float d)
 {
     float u = larger(1.0f - d * d, 0);
@@ -62,6 +67,20 @@ static inline curve step_cubic(float t)
     float low = a < 2.0f / 3 ? outer : inner;
     float slope = a < 2.0f / 3 ? (27.0f / 16) * (a * a) : 1.125f - 1.5f * (v * v);
     return (curve){t > 0 ? 1.0f - low : low, slope};
+}
+
+/* 1/2 + rate v in [0, 1]; what is nearly 0 or 1 comes from a field that was just that. */
+static inline curve clamped(float f)
+{
+    const float hair = 0x1p-22f;
+    int inside = (f > hair) & (f < 1.0f - hair);
+    float end = f > 0.5f ? 1.0f : 0.0f;
+    return (curve){inside ? f : end, inside ? 1.0f : 0.0f};
+}
+
+static inline float distance_of(float iso, float rate, float v)
+{
+    return larger(smaller(iso - rate * v, 1.0f), 0); /* NaN is outside */
 }
 
 /* ---- Ricci's operators (6.1) --------------------------------------------------------------- */
@@ -160,12 +179,19 @@ static inline curve normalise_sum(float u)
 
 /* N_S for ranges times s: m = 1 / (1 + s h) with h = r1 r2 / (r1 + r2 + sqrt(2 r1 r2 (1 - kappa))).
  */
+static inline float top_of_turned(float h, float s)
+{
+    return (1.0f - (float)CSG_SCALE_HAIR) / (1.0f + s * h);
+}
+/* 1 - m = s h / under, m - 1/2 = half / 2 under */
+static inline float bend_of_turned(float h, float s)
+{
+    float under = 1.0f + s * h, half = 1.0f - s * h;
+    return 4.0f * s * h * under / (half * half);
+}
 static inline curve normalise_turned(float h, float s, float u)
 {
-    float under = 1.0f + s * h,
-          half = 1.0f - s * h; /* 1 - m = s h / under, m - 1/2 = half / 2 under */
-    float bend = 4.0f * s * h * under / (half * half);
-    return normalise_scale((1.0f - (float)CSG_SCALE_HAIR) / under, bend, u);
+    return normalise_scale(top_of_turned(h, s), bend_of_turned(h, s), u);
 }
 
 /* ---- products (6.4) -------------------------------------------------------------------------- */
@@ -218,6 +244,34 @@ INLINED mixture arc_intersection(float a, float b, float x, float y)
     float gx = only_x ? 1.0f : nx * scale, gy = only_x ? 0.0f : ny * scale;
     g = only_x ? x : g;
     return (mixture){only_y ? y : g, only_y ? 0.0f : gx, only_y ? 1.0f : gy};
+}
+
+/* One stretch's part of a profile's factor (5.5): what it rises between its knots and where the
+ * angle is. */
+static inline curve profile_part(const float *stretch, float angle)
+{
+    const float inverse = stretch[CSG_STRETCH_INVERSE], rise = stretch[CSG_STRETCH_RISE];
+    const float first = stretch[CSG_STRETCH_SLOPE], last = stretch[CSG_STRETCH_NEXT_SLOPE];
+    float s = smaller(larger((angle - stretch[CSG_STRETCH_ANGLE]) * inverse, 0), 1.0f);
+    float z = 1.0f - s;
+    float steep =
+        rise * (6.0f * s * z) + first * (z * (1.0f - 3.0f * s)) + last * (s * (3.0f * s - 2.0f));
+    return (curve){rise * (s * s * (3.0f - 2.0f * s)) + first * (s * (z * z)) - last * (s * s * z),
+                   (s > 0) & (s < 1.0f) ? inverse * steep : 0};
+}
+
+/* ---- sharp -----------------------------------------------------------------------------------
+ */
+
+static inline mixture field_union(float x, float y)
+{
+    float first = x > y ? 1.0f : 0.0f;
+    return (mixture){larger(x, y), first, 1.0f - first};
+}
+static inline mixture field_intersection(float x, float y)
+{
+    float first = x < y ? 1.0f : 0.0f;
+    return (mixture){smaller(x, y), first, 1.0f - first};
 }
 
 /* ---- sharp at the surface (5.6), C = 1/2 ------------------------------------------------------

@@ -53,7 +53,9 @@ static double span_of_pairs(const walker *w, const operand *a, const operand *b,
 double csg_slopes_change(const walker *w, const operand *a, const operand *b)
 {
     if (a->stretched || b->stretched || a->balls.has_edges || b->balls.has_edges)
-        return 2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz) * w->radius;
+        return fmax(2 * fmax((double)w->tape->steepest, (double)w->tape->lipschitz),
+                    a->longest + b->longest) *
+               w->radius;
     if (a->faces || b->faces)
         return 1.41421357 * (csg_slopes_sets_apart(&a->balls, &b->balls) * w->radius);
     return span_of_pairs(w, a, b, -1);
@@ -505,8 +507,11 @@ static bool walk(walker *w)
             known = csg_slopes_join_round(w, node);
         } else if (csg_op_is_fillet(node->op)) {
             known = csg_slopes_join_fillet(w, node);
-        } else if (known && csg_blend_is_rule(node->blend)) {
-            csg_slopes_end_rule(w, node);
+        } else if (node->op == CSG_OP_COMBINE) {
+            known = csg_slopes_combine(w, node);
+        } else if (csg_op_delivers(node->op)) {
+            csg_slopes_deliver(w, node);
+            known = true;
         }
         w->nodes[w->top - 1].end = i + 1;
         if (!known || (node->join && !join_operands(w, node)))

@@ -4,6 +4,8 @@
  * operands' gradients in shares that depend on the operands' difference alone, and that changes
  * within the region by no more than the gradients allow: so where two surfaces flow into each other
  * the set shrinks with the region, and what a sharp operator hides there does not take part at all.
+ * Rules and formulas of operands (slopes_rule.c) add their operands' gradients times what partial
+ * derivatives can be in the region, which their values there tell.
  * Leaves are asked in a ball around the region; how far operands part from each other in it is told
  * by its extent along their gradients' difference, which along a straight fillet is none.
  *
@@ -31,7 +33,7 @@
 #include "field/cones/cone.h"
 #include "field/kernels/kernel.h"
 
-enum { CSG_SLOPES_NODES = 24 /* of a tape; more are not looked at */ };
+enum { CSG_SLOPES_NODES = 128 /* of a tape; more are not looked at */ };
 
 /* What is within `around` of the convex hull of a triangle and a point c, or in a cube of that half
  * edge along the axes around a place that is. */

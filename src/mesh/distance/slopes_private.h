@@ -78,10 +78,12 @@ bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slop
 bool csg_slopes_join_round(csg_slopes_walker *w, const csg_tape_node *node);
 /* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */
 bool csg_slopes_join_fillet(csg_slopes_walker *w, const csg_tape_node *node);
-/* A blend by a rule of lengths, of the two operands on top of the stack. What they become has no
- * value until the operator ends. False: no bound is known. */
+/* A rule, of the two operands on top of the stack: lengths, or fields. False: no bound is known. */
 bool csg_slopes_join_rule(csg_slopes_walker *w, const csg_tape_node *node);
-void csg_slopes_end_rule(csg_slopes_walker *w, const csg_tape_node *node);
+/* What a soft node, or an operator on fields, makes of the operand on top. */
+void csg_slopes_deliver(csg_slopes_walker *w, const csg_tape_node *node);
+/* Of a formula of its operands, which are on the stack. False: as above. */
+bool csg_slopes_combine(csg_slopes_walker *w, const csg_tape_node *node);
 
 /* A ball around all gradients, around the axis that they have in common. False: none is known. */
 bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis, double longest,

@@ -95,6 +95,12 @@ double csg_rule_apply(const csg_rule *rule, bool is_union, const double *values,
 void csg_rule_enclose(const csg_rule *rule, bool is_union, const double *low, const double *high,
                       size_t count, const double cosines[2], double *partials, double out[2]);
 
+/* EXTERIOR, INTERIOR: between which the partial derivative of a union by its first operand lies
+ * where that is more than the second one by t in low..high; the other one is 1 minus it. k: the
+ * rule's, which is all that is known of steps that are not even and of an EXTERIOR whose steps
+ * overlap. Rounding is not widened. */
+void csg_rule_bound_share(const csg_rule *rule, double k, double low, double high, double out[2]);
+
 /* ARC: the spline's factor at an angle in radians, 1 outside of its knots. */
 double csg_spline_at(const csg_spline *spline, double angle, double *slope);
 /* N_S and N_A of operators.md 6.5, and m of 6.3 for ranges r1, r2 and kappa = p / (r1 r2). */

@@ -92,3 +92,77 @@ double csg_rule_lengths(const csg_rule *rule, const double *values, double *part
     partials[right] = -slope;
     return value;
 }
+
+/* ---- slopes over a range of leads --------------------------------------------------------------
+ */
+
+typedef struct step_range {
+    double low, high, least_slope, most_slope; /* of mu and mu' */
+} step_range;
+
+/* mu rises; mu' of an even step rises up to 0 and falls from there. */
+static step_range step_over(csg_step step, double from, double to)
+{
+    double first, last, middle = 0;
+    step_range r = {.low = csg_step_at(step, from, &first), .high = csg_step_at(step, to, &last)};
+    if (from <= 0 && to >= 0)
+        csg_step_at(step, 0, &middle);
+    r.least_slope = fmin(first, last);
+    r.most_slope = fmax(fmax(first, last), middle);
+    return r;
+}
+
+static double least_product(double a, double b, double c, double d)
+{
+    return fmin(fmin(a * c, a * d), fmin(b * c, b * d));
+}
+
+/* 1 - w, w = mu(s) + s mu'(s) with s = -t / eps. */
+static void bound_interior(const csg_rule *rule, double low, double high, double out[2])
+{
+    double eps = rule->parameters[0], from = -high / eps, to = -low / eps;
+    step_range mu = step_over(rule->step, from, to);
+    double least = least_product(from, to, mu.least_slope, mu.most_slope);
+    double most = -least_product(-to, -from, mu.least_slope, mu.most_slope);
+    out[0] = 1 - mu.high - most;
+    out[1] = 1 - mu.low - least;
+}
+
+/* S' of leads t >= 0: 1 + eps / delta ((1 - mu) u - mu' u^2 / 2), u = (t - delta) / eps. */
+static void bound_exterior(const csg_rule *rule, double low, double high, double out[2])
+{
+    double delta = rule->parameters[0], eps = rule->parameters[1], by = eps / delta;
+    double from = (low - delta) / eps, to = (high - delta) / eps;
+    step_range mu = step_over(rule->step, from, to);
+    double least = least_product(from, to, 1 - mu.high, 1 - mu.low);
+    double most = -least_product(-to, -from, 1 - mu.high, 1 - mu.low);
+    double square = fmax(from * from, to * to);
+    double least_square = from <= 0 && to >= 0 ? 0 : fmin(from * from, to * to);
+    out[0] = 1 + by * (least - 0.5 * mu.most_slope * square);
+    out[1] = 1 + by * (most - 0.5 * mu.least_slope * least_square);
+}
+
+void csg_rule_bound_share(const csg_rule *rule, double k, double low, double high, double out[2])
+{
+    double support = csg_rule_support(rule);
+    bool is_local = rule->step.kind != CSG_STEP_SIGMOID;
+    bool is_even = rule->step.kind != CSG_STEP_RISING;
+    out[0] = (1 - k) / 2;
+    out[1] = (1 + k) / 2;
+    if (low >= support || high <= -support) {
+        out[0] = out[1] = low > 0;
+    } else if (rule->kind == CSG_BLEND_INTERIOR && is_even) {
+        double bound[2];
+        bound_interior(rule, low, high, bound);
+        out[0] = fmax(out[0], bound[0]);
+        out[1] = fmin(out[1], bound[1]);
+    } else if (rule->kind == CSG_BLEND_EXTERIOR && is_even && is_local && !csg_rule_is_wide(rule)) {
+        double right[2] = {INFINITY, -INFINITY}, left[2] = {INFINITY, -INFINITY};
+        if (high >= 0)
+            bound_exterior(rule, fmax(low, 0), high, right);
+        if (low <= 0)
+            bound_exterior(rule, fmax(-high, 0), -low, left);
+        out[0] = fmax(out[0], (1 + fmin(right[0], -left[1])) / 2);
+        out[1] = fmin(out[1], (1 + fmax(right[1], -left[0])) / 2);
+    }
+}
