@@ -491,9 +491,10 @@ static bool push_leaf(walker *w, const csg_tape_node *node)
 /* ---- the walk ----------------------------------------------------------------------------------
  */
 
-static bool walk(walker *w)
+/* A subtree, or all of the tape. */
+static bool walk_nodes(walker *w, uint32_t first, uint32_t count)
 {
-    for (uint32_t i = 0; i < w->tape->count; i++) {
+    for (uint32_t i = first; i < first + count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op))
@@ -508,6 +509,38 @@ static bool walk(walker *w)
             return false;
     }
     return true;
+}
+
+/* Parts that touch: one half where the region does not reach the plane, else any of both. */
+static bool join_halves(walker *w, const csg_touching *t)
+{
+    operand *a = &w->stack[0], *b = &w->stack[1];
+    const double slope[3] = {t->slope.x, t->slope.y, t->slope.z};
+    double side = csg_touching_side(t, w->region.c), reach = span_of(w, slope, 0) + t->doubt;
+    w->top = 1;
+    if (side > reach)
+        return true;
+    if (side < -reach) {
+        *a = *b;
+        return true;
+    }
+    a->low = fmin(a->low, b->low) - t->doubt;
+    a->high = fmax(a->high, b->high) + t->doubt;
+    a->least = fmin(a->least, b->least);
+    a->most = fmax(a->most, b->most);
+    a->doubt = fmax(a->doubt, b->doubt) + t->doubt;
+    a->value = side < 0 ? b->value : a->value;
+    return csg_slopes_mix(a, b, (range){0, 1}, true);
+}
+
+static bool walk(walker *w, const csg_touching *t)
+{
+    if (!t->is_there)
+        return walk_nodes(w, 0, t->tape->count);
+    for (int i = 0; i < 2; i++)
+        if (!walk_nodes(w, (uint32_t)(t->halves[i].nodes - t->tape->nodes), t->halves[i].count))
+            return false;
+    return join_halves(w, t);
 }
 
 /* The middle of the balls, whose hull they are in, or where combinations of these may be longer of
@@ -596,10 +629,11 @@ static bool have_triangles(const csg_gradients_region *regions, size_t count)
     return any;
 }
 
-void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_touching *field,
                              const csg_gradients_region *regions, size_t count, float *scratch,
                              size_t scratch_floats, csg_gradients *const *out, bool *is_known)
 {
+    const csg_tape *tape = field->tape;
     enum { PLACES = CORNERS + 1 };
     float values[CSG_SLOPES_NODES * PLACES * CSG_OCTANTS];
     float x[PLACES * CSG_OCTANTS], y[PLACES * CSG_OCTANTS], z[PLACES * CSG_OCTANTS];
@@ -635,7 +669,7 @@ void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
             w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(w.region.triangle[k], w.region.c)));
         w.normal = normal_of(w.region.triangle);
         w.radius = w.flat + w.region.around + sqrt(3.0) * w.region.half;
-        is_known[i] = walk(&w) && take_result(&w, out[i]);
+        is_known[i] = walk(&w, field) && take_result(&w, out[i]);
     }
 }
 
@@ -644,7 +678,8 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         csg_gradients *out)
 {
     bool is_known;
-    csg_gradients_find_each(kernel, tape, region, 1, scratch, scratch_floats, &out, &is_known);
+    const csg_touching field = csg_touching_none(tape);
+    csg_gradients_find_each(kernel, &field, region, 1, scratch, scratch_floats, &out, &is_known);
     return is_known;
 }
 
@@ -654,19 +689,4 @@ bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)
         return csg_cone_find_axis(&gradients->balls, out);
     *out = gradients->cone;
     return gradients->has_axis;
-}
-
-double csg_gradients_steepest(const csg_gradients *gradients)
-{
-    double most = 0;
-    if (!(gradients->stray < INFINITY))
-        return INFINITY;
-    if (gradients->exceeds)
-        return sqrt(3.0) * gradients->longest;
-    for (uint32_t i = 0; i < gradients->balls.count; i++) {
-        const csg_cone_ball *ball = &gradients->balls.items[i];
-        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
-        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
-    }
-    return most;
 }
