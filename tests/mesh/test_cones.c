@@ -166,7 +166,8 @@ static bool try_steps(const csgm_scene *scene, const csgm_field *field, csg_rand
                        .stray = found->across * radius,
                        .kink = found->kink,
                        .sag = found->sag};
-    csg_steps_settle(csg_kernel_for(CSGM_ISA_AUTO), &field->tape, 0, scratch, floats, &piece, 1);
+    const csg_touching whole = csg_touching_none(&field->tape);
+    csg_steps_settle(csg_kernel_for(CSGM_ISA_AUTO), &whole, 0, scratch, floats, &piece, 1);
     for (int i = 0; !piece.fails && i < TRIES; i++) {
         double s = csg_random_uniform(random, 0, 1), t = csg_random_uniform(random, 0, 1 - s);
         csg_vec3 p = csg_vec3_add(csg_vec3_scale(v[0], s), csg_vec3_scale(v[1], t));

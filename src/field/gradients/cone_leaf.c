@@ -11,6 +11,7 @@
 #include "field/gradients/cone_leaf.h"
 #include "field/gradients/cone_warp.h"
 #include "scene/primitives/curve.h"
+#include "shape/polyhedra/polyhedron.h"
 
 /* ---- shapes ----------------------------------------------------------------------------------
  */
@@ -61,6 +62,33 @@ static bool take_normal(void *user, csg_vec3 n)
     return true;
 }
 
+/* Outside of a convex solid the gradient is that of the vector from the nearest point, which moves
+ * by no more than the point does: far from an edge, that is less than the faces there turn. Edges
+ * count as convex that bend the other way by rounding. False: it is not less, or not known. */
+static bool add_away_from(csg_cone_leaf *l, const csg_shape *shape, uint32_t first)
+{
+    static const double ROUNDING = 1e-3;
+    csg_cone_balls *balls = l->balls;
+    csg_vec3 g;
+    double faces = 0;
+    if (shape->kind != CSG_SHAPE_POLYHEDRON || !csg_polyhedron_is_convex(shape))
+        return false;
+    double away = -csg_shape_sample(shape, csg_vec3_make(l->q[0], l->q[1], l->q[2]), &g);
+    double spread = csg_cone_turn_within(away, l->rho) + ROUNDING;
+    uint32_t count = balls->count;
+    if (!(spread < 1) || !csg_cone_add(l, g.x, g.y, g.z, spread))
+        return false;
+    csg_cone_ball one = balls->items[count];
+    for (uint32_t i = first; i < count; i++)
+        faces = fmax(faces, distance_between(balls->items[i].at, one.at));
+    balls->count = count;
+    if (faces <= one.spread)
+        return false;
+    balls->items[first] = one;
+    balls->count = first + 1;
+    return true;
+}
+
 /* shape.h: gradients are the normals of what can be nearest, or combinations of them with weights
  * >= 0, whose sum is at least 1 as that of faces. */
 static bool add_shape(csg_cone_leaf *l, const csg_tape *tape)
@@ -69,6 +97,8 @@ static bool add_shape(csg_cone_leaf *l, const csg_tape *tape)
     const csg_shape *shape = tape->shapes[(uint32_t)l->own[0]];
     bool done =
         csg_shape_normals(shape, csg_vec3_make(l->q[0], l->q[1], l->q[2]), l->rho, take_normal, &s);
+    if (done && s.is_bent && add_away_from(l, shape, s.first))
+        return true;
     l->balls->has_edges |= s.is_bent;
     return done && s.is_set;
 }

@@ -177,7 +177,8 @@ static double times_too_large(const proof *p, disc d)
 }
 
 /* Of what its gradients did not settle. */
-static verdict settle_otherwise(const proof *p, settler *s, const piece *one, const look *l)
+static verdict settle_otherwise(const proof *p, settler *s, const csg_touching *field,
+                                const piece *one, const look *l)
 {
     static const double STEPS_REACH = 6; /* of the error */
     static const double NEARBY = 0.8;    /* of what is left beside the piece */
@@ -197,13 +198,26 @@ static verdict settle_otherwise(const proof *p, settler *s, const piece *one, co
                         .fails = true};
     if ((!l->is_known || l->gradients.stray > 0.5 * steepest) &&
         may_settle_by_steps(p, &inward, steepest))
-        csg_steps_settle(p->remesh->probe.marching->kernel, &s->tape, slack_of(p), s->scratch,
+        csg_steps_settle(p->remesh->probe.marching->kernel, field, slack_of(p), s->scratch,
                          p->scratch_floats, &inward, 1);
     if (!inward.fails)
         return SETTLED;
     csg_vec3 side = csg_vec3_normalize(csg_vec3_sub(one->at[1], one->at[0]));
     bool may_be_nearby = fabs(value) < NEARBY * steepest * (p->error - l->d.radius);
     return may_be_nearby && settles_nearby(p, s, l->d, one->normal, side) ? SETTLED : OPEN;
+}
+
+/* In a ball that holds all of the regions. */
+static csg_touching find_touching(const proof *p, const settler *s,
+                                  const csg_gradients_region *near, size_t count)
+{
+    double radius = 0;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            double off = csg_vec3_norm(csg_vec3_sub(near[i].triangle[k], near[0].c));
+            radius = fmax(radius, off + near[i].around);
+        }
+    return csg_touching_find(p->remesh->probe.marching->kernel, &s->tape, near[0].c, radius);
 }
 
 /* Up to eight pieces for which the settler's tape holds. */
@@ -224,7 +238,8 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
         near[i] = (csg_gradients_region){{at[0], at[1], at[2]}, looks[i].d.center, p->error, 0};
         found[i] = &looks[i].gradients;
     }
-    csg_gradients_find_each(kernel, &s->tape, near, count, s->scratch, p->scratch_floats, found,
+    const csg_touching field = find_touching(p, s, near, count);
+    csg_gradients_find_each(kernel, &field, near, count, s->scratch, p->scratch_floats, found,
                             is_known);
     for (size_t i = 0; i < count; i++) {
         bool asks;
@@ -235,8 +250,7 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
             asking[asked++] = answers[i];
     }
     if (asked)
-        csg_steps_settle(kernel, &s->tape, slack_of(p), s->scratch, p->scratch_floats, steps,
-                         asked);
+        csg_steps_settle(kernel, &field, slack_of(p), s->scratch, p->scratch_floats, steps, asked);
     for (size_t i = 0; i < asked; i++) {
         asking[i]->what = steps[i].fails ? OPEN : SETTLED;
         asking[i]->excess = steps[i].excess;
@@ -245,7 +259,7 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
     s->effort += count * csg_effort_of(&s->tape);
     for (size_t i = 0; i < count; i++) {
         if (answers[i]->what == OPEN)
-            answers[i]->what = settle_otherwise(p, s, pieces[i], &looks[i]);
+            answers[i]->what = settle_otherwise(p, s, &field, pieces[i], &looks[i]);
         double times = times_too_large(p, looks[i].d);
         answers[i]->excess = fmin(answers[i]->excess, times * times);
     }

@@ -13,6 +13,8 @@
  *            gradients' bounds, so pieces of the order of sqrt(E / curvature) are settled at once
  *   nearby   f changes its sign within E - r of c
  *
+ * Where parts of a solid touch and are flush, cone and steps ask what stands for f (touching.h).
+ *
  * Meshes that began with triangles of polyhedra are held against those (begun.h).
  *
  * Every piece that is settled has the surface within E on the line through each of its points; and

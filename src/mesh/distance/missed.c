@@ -159,7 +159,7 @@ static bool is_surface_near(const walk *w, worker *s, cube *q)
 static verdict settle_turns(const walk *w, worker *s, const cube *q)
 {
     static const double CLOSE = 0.5; /* of the error */
-    place places[CSG_MISSED_TURNS];
+    place places[CSG_MISSED_MOST_TURNS];
     uint32_t triangle, count = q->is_bent ? csg_missed_find_turns(&s->field, q, places) : 0;
     for (uint32_t i = 0; i < count; i++) {
         csg_vec3 p = places[i].at;

@@ -42,17 +42,25 @@ static void add_seed(seeds *to, csg_vec3 at)
     to->at[to->count++] = at;
 }
 
+/* What is asked in a cube and those around it: the field, or what stands for it where solids touch,
+ * which is zero at the surface alone. */
+static csg_touching field_in(const field *w, const cube *q)
+{
+    double radius = sqrt(3.0) * (q->half + q->around);
+    return csg_touching_find(w->remesh->probe.marching->kernel, &q->tape, q->c, radius);
+}
+
 /* The field where those are that move. */
-static void ask(const field *w, const csg_tape *tape, seeds *of)
+static void ask(const field *w, const csg_touching *in, seeds *of)
 {
     float at[3][SEEDS] = {{0}}, f[SEEDS], g[3][SEEDS];
     for (uint32_t k = 0; k < of->moving_count; k++) {
         csg_vec3 p = of->at[of->moving[k]];
         at[0][k] = (float)p.x, at[1][k] = (float)p.y, at[2][k] = (float)p.z;
     }
-    w->remesh->probe.marching->kernel->values_and_gradients(tape, at[0], at[1], at[2],
-                                                            of->moving_count, f, g[0], g[1], g[2],
-                                                            w->scratch, w->scratch_floats);
+    csg_touching_values_and_gradients(in, w->remesh->probe.marching->kernel, at[0], at[1], at[2],
+                                      of->moving_count, f, g[0], g[1], g[2], w->scratch,
+                                      w->scratch_floats);
     for (uint32_t k = 0; k < of->moving_count; k++) {
         of->value[of->moving[k]] = (double)f[k];
         of->slope[of->moving[k]] = csg_vec3_make((double)g[0][k], (double)g[1][k], (double)g[2][k]);
@@ -62,7 +70,7 @@ static void ask(const field *w, const csg_tape *tape, seeds *of)
 /* Seeds that were asked for go to places of the surface that are no farther off along any axis than
  * `reach`, by Newton's steps; is_found: which do. All go at once: a walk over the tape for sixteen
  * places costs what it does for one. */
-static void find_surfaces(const field *w, const csg_tape *tape, double reach, seeds *of,
+static void find_surfaces(const field *w, const csg_touching *in, double reach, seeds *of,
                           bool is_found[SEEDS])
 {
     enum { STEPS = 6 };
@@ -86,7 +94,7 @@ static void find_surfaces(const field *w, const csg_tape *tape, double reach, se
         of->moving_count = left;
         if (!left)
             return;
-        ask(w, tape, of);
+        ask(w, in, of);
     }
 }
 
@@ -168,7 +176,7 @@ static bool find_plane(csg_vec3 at, double value, csg_vec3 gradient, csg_plane *
 
 /* Planes of the two faces that turn most from each other, as the cube's corners and its middle
  * show them. */
-static bool find_faces(const field *w, const cube *q, csg_plane faces[2])
+static bool find_faces(const field *w, const csg_touching *in, const cube *q, csg_plane faces[2])
 {
     float at[3][CSG_LANES] = {{0}}, g[3][CSG_LANES], f[CSG_LANES];
     csg_plane planes[CSG_OCTANTS + 1] = {{{0, 0, 0}, 0}};
@@ -179,9 +187,9 @@ static bool find_faces(const field *w, const cube *q, csg_plane faces[2])
         at[1][i] = (float)(q->c.y + (i & 2 ? step : -step));
         at[2][i] = (float)(q->c.z + (i & 4 ? step : -step));
     }
-    w->remesh->probe.marching->kernel->values_and_gradients(&q->tape, at[0], at[1], at[2],
-                                                            CSG_OCTANTS, f, g[0], g[1], g[2],
-                                                            w->scratch, w->scratch_floats);
+    csg_touching_values_and_gradients(in, w->remesh->probe.marching->kernel, at[0], at[1], at[2],
+                                      CSG_OCTANTS, f, g[0], g[1], g[2], w->scratch,
+                                      w->scratch_floats);
     count += find_plane(q->c, q->value, q->slope, &planes[count]);
     for (int i = 0; i < CSG_OCTANTS; i++) {
         csg_vec3 p = {(double)at[0][i], (double)at[1][i], (double)at[2][i]};
@@ -200,28 +208,53 @@ static bool find_faces(const field *w, const cube *q, csg_plane faces[2])
     return least < LEVEL;
 }
 
-uint32_t csg_missed_find_turns(const field *w, const cube *q, place out[CSG_MISSED_TURNS])
+/* The plane in which solids touch, and that of the surface where it meets the seam. */
+static bool find_seam(const field *w, const csg_touching *in, const cube *q, csg_plane faces[2])
+{
+    double norm = csg_vec3_norm(in->slope), side = csg_touching_side(in, q->c) / norm;
+    seeds at = {.count = 0};
+    if (fabs(side) > sqrt(3.0) * reach_of(q))
+        return false;
+    csg_vec3 normal = csg_vec3_scale(in->slope, 1 / norm);
+    csg_vec3 foot = csg_vec3_sub(q->c, csg_vec3_scale(normal, side));
+    faces[0] = csg_plane_of(foot, 0, normal);
+    add_seed(&at, foot);
+    ask(w, in, &at);
+    return find_plane(foot, at.value[0], at.slope[0], &faces[1]);
+}
+
+/* Along the line in which two planes meet, in the cube; beside it places are another cube's. */
+static void add_seeds_along(const cube *q, const csg_plane faces[2], seeds *to)
 {
     static const double LEAST_SQUARE = 0.05; /* of the sine */
-    csg_plane faces[2] = {{{0, 0, 0}, 0}};
     csg_vec3 middle = q->c;
-    seeds from = {.count = 0};
-    bool is_found[SEEDS];
-    uint32_t count = 0;
-    if (!find_faces(w, q, faces) || !csg_planes_meet_in_line(faces, LEAST_SQUARE, &middle))
-        return 0;
+    if (!csg_planes_meet_in_line(faces, LEAST_SQUARE, &middle))
+        return;
     csg_vec3 along = csg_vec3_normalize(csg_vec3_cross(faces[0].g, faces[1].g));
     for (int i = 0; i < CSG_MISSED_TURNS; i++) {
         double step = (2.0 * i / (CSG_MISSED_TURNS - 1) - 1) * q->half;
         csg_vec3 at = csg_vec3_add(middle, csg_vec3_scale(along, step));
         csg_vec3 off = csg_vec3_sub(at, q->c);
         if (fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))) <= reach_of(q))
-            add_seed(&from, at); /* else it is another cube's */
+            add_seed(to, at);
     }
+}
+
+uint32_t csg_missed_find_turns(const field *w, const cube *q, place out[CSG_MISSED_MOST_TURNS])
+{
+    csg_plane faces[2] = {{{0, 0, 0}, 0}};
+    seeds from = {.count = 0};
+    bool is_found[SEEDS];
+    uint32_t count = 0;
+    const csg_touching in = field_in(w, q);
+    if (find_faces(w, &in, q, faces))
+        add_seeds_along(q, faces, &from);
+    if (in.is_there && find_seam(w, &in, q, faces))
+        add_seeds_along(q, faces, &from);
     if (!from.count)
         return 0;
-    ask(w, &q->tape, &from);
-    find_surfaces(w, &q->tape, reach_of(q), &from, is_found);
+    ask(w, &in, &from);
+    find_surfaces(w, &in, reach_of(q), &from, is_found);
     for (uint32_t i = 0; i < from.count; i++)
         if (is_found[i])
             out[count++] = (place){from.at[i], from.slope[i]};
@@ -248,6 +281,18 @@ static content content_of(const field *w, cube *q, const csg_gradients *gradient
                                                                         : CSG_MISSED_ANYTHING;
 }
 
+/* Of cubes with one tape. */
+static csg_touching field_in_all(const field *w, cube *const *cubes, size_t count)
+{
+    double radius = 0;
+    for (size_t i = 0; i < count; i++) {
+        double off = csg_vec3_norm(csg_vec3_sub(cubes[i]->c, cubes[0]->c));
+        radius = fmax(radius, off + sqrt(3.0) * cubes[i]->half);
+    }
+    return csg_touching_find(w->remesh->probe.marching->kernel, &cubes[0]->tape, cubes[0]->c,
+                             radius);
+}
+
 void csg_missed_find_contents(const field *w, cube *const *cubes, size_t count)
 {
     csg_gradients_region all[CSG_OCTANTS] = {0};
@@ -258,8 +303,9 @@ void csg_missed_find_contents(const field *w, cube *const *cubes, size_t count)
         all[i] = (csg_gradients_region){{c, c, c}, c, 0, cubes[i]->half};
         found[i] = &gradients[i];
     }
-    csg_gradients_find_each(w->remesh->probe.marching->kernel, &cubes[0]->tape, all, count,
-                            w->scratch, w->scratch_floats, found, is_known);
+    const csg_touching in = field_in_all(w, cubes, count);
+    csg_gradients_find_each(w->remesh->probe.marching->kernel, &in, all, count, w->scratch,
+                            w->scratch_floats, found, is_known);
     for (size_t i = 0; i < count; i++)
         cubes[i]->what = is_known[i] ? content_of(w, cubes[i], &gradients[i]) : CSG_MISSED_ANYTHING;
 }
@@ -284,7 +330,8 @@ void csg_missed_find_surfaces(const field *w, const cube *parent, cube *children
     bool is_found[SEEDS] = {false};
     for (uint32_t i = 0; i < count; i++)
         add_seed(&from, children[i].c);
-    ask(w, &parent->tape, &from);
+    const csg_touching in = field_in(w, parent);
+    ask(w, &in, &from);
     from.moving_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         children[i].value = from.value[i];
@@ -292,7 +339,7 @@ void csg_missed_find_surfaces(const field *w, const cube *parent, cube *children
         if (!csg_missed_is_empty(w, &children[i]))
             from.moving[from.moving_count++] = i;
     }
-    find_surfaces(w, &parent->tape, reach_of(&children[0]), &from, is_found);
+    find_surfaces(w, &in, reach_of(&children[0]), &from, is_found);
     for (uint32_t i = 0; i < count; i++) {
         children[i].has_surface = is_found[i];
         children[i].is_asked = false;

@@ -7,7 +7,7 @@
 
 #include "mesh/remesh/remesh.h"
 
-enum { CSG_MISSED_TURNS = 5 };
+enum { CSG_MISSED_TURNS = 5 /* along a line */, CSG_MISSED_MOST_TURNS = 2 * CSG_MISSED_TURNS };
 
 /* What is asked, and room of one worker's. */
 typedef struct csg_missed_field {
@@ -61,9 +61,9 @@ bool csg_missed_leads_out(const csg_missed_cube *q);
 void csg_missed_find_contents(const csg_missed_field *w, csg_missed_cube *const *cubes,
                               size_t count);
 /* Places where a sheet turns within the cube: along the line in which tangent planes of both faces
- * meet, from there to the surface. */
+ * meet, from there to the surface. The seam in which solids touch is such a line, too. */
 uint32_t csg_missed_find_turns(const csg_missed_field *w, const csg_missed_cube *q,
-                               csg_missed_place out[CSG_MISSED_TURNS]);
+                               csg_missed_place out[CSG_MISSED_MOST_TURNS]);
 /* Whether f changes its sign at a place where it is zero: where parts of a solid touch it is zero
  * within, and outside where nothing is left of a wall. A gap, or a wall, as narrow as the last ring
  * would be none. */

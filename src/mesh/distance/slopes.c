@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/point.h"
 #include "mesh/distance/slopes_private.h"
 #include "scene/operators/blend_kinds.h"
 #include "scene/operators/blends.h"
@@ -16,8 +15,6 @@ typedef csg_slopes_operand operand;
 typedef csg_slopes_walker walker;
 typedef csg_slopes_range range;
 typedef csg_slopes_which which;
-
-enum { CORNERS = 3 /* of a triangle */ };
 
 /* ---- differences and shares --------------------------------------------------------------------
  */
@@ -47,6 +44,17 @@ static double span_of_pairs(const walker *w, const operand *a, const operand *b,
                                     p->at[2] + sign * q->at[2]};
             most = fmax(most, span_of(w, both, p->spread + q->spread));
         }
+    return most;
+}
+
+/* How much it can change within the region. */
+double csg_slopes_span(const walker *w, const operand *leaf)
+{
+    double most = 0;
+    if (leaf->faces || leaf->stretched || leaf->balls.has_edges)
+        return leaf->longest * w->radius;
+    for (uint32_t i = 0; i < leaf->balls.count; i++)
+        most = fmax(most, span_of(w, leaf->balls.items[i].at, leaf->balls.items[i].spread));
     return most;
 }
 
@@ -325,184 +333,18 @@ double csg_slopes_value(const operand *o, which w)
     return NAN;
 }
 
-/* ---- leaves ------------------------------------------------------------------------------------
- */
-
-/* Signed distances to convex sets, and 1 - d of a gauge d, are concave, wherever they are asked;
- * not through a warp. */
-static bool is_concave(const csg_tape_node *leaf)
-{
-    return !leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX);
-}
-
-/* Of a leaf at a corner, or at c behind them. */
-static double leaf_value(const walker *w, const csg_tape_node *leaf, uint32_t place)
-{
-    size_t at = (size_t)(leaf - w->tape->nodes) * w->stride;
-    return (double)w->values[at + (place < w->places ? place : w->places - 1)];
-}
-
-/* Whether it is a gradient that the leaf has, as far as is known. On a face, to rounding, the
- * kernel's points anywhere. */
-static bool is_one_of(const csg_cone_balls *balls, csg_vec3 g)
-{
-    static const double ROUNDING = 1e-3;
-    bool any = false;
-    for (uint32_t i = 0; i < balls->count; i++) {
-        const csg_cone_ball *ball = &balls->items[i];
-        csg_vec3 off = {g.x - ball->at[0], g.y - ball->at[1], g.z - ball->at[2]};
-        any |= csg_vec3_norm(off) <= ball->spread + ROUNDING;
-    }
-    return any;
-}
-
-/* The largest value over the triangle, by the tangent plane at the centre, of a concave leaf; of a
- * convex one, which is turned around, the least. Infinite where that is no tangent plane: so near
- * to a face that rounding tells its direction, or with a corner on its other side. */
-static double tangent_value(const walker *w, const csg_tape_node *node, const operand *leaf,
-                            double turn)
-{
-    static const double FAR = 1e3; /* of the rounding of a value */
-    csg_tape_node alone = *node;
-    csg_tape tape = *w->tape;
-    alone.join = CSG_JOIN_NONE;
-    tape.nodes = &alone;
-    tape.count = 1;
-    const csg_gradients_region *r = &w->region;
-    csg_vec3 slope = csg_tape_gradient_at(w->kernel, &tape, r->c, w->scratch, w->scratch_floats);
-    double from_face = leaf->value - (double)w->tape->parameters[node->parameters + CSG_LEAF_RAISE];
-    double value = leaf->value + turn * leaf->doubt, most = 0, slack = 1e-5 * w->flat;
-    bool is_tangent = fabs(from_face) > FAR * leaf->doubt || is_one_of(&leaf->balls, slope);
-    for (uint32_t k = 0; k < CORNERS; k++) {
-        double along = csg_vec3_dot(slope, csg_vec3_sub(r->triangle[k], r->c));
-        double beyond = turn * (leaf_value(w, node, k) - value - along);
-        is_tangent &= beyond <= 2 * leaf->doubt + slack;
-        most = fmax(most, turn * along);
-    }
-    return is_tangent ? value + turn * (most + slack) : turn * INFINITY;
-}
-
-/* Gradients turn, or in the end are apart, however fast they turn. */
-static void find_sag(const walker *w, operand *leaf)
-{
-    double bend = leaf->balls.bend * w->flat;
-    bool is_slow = bend < 2 * leaf->balls.items[0].spread;
-    leaf->kink = is_slow || !(w->flat > 0) ? 0 : csg_slopes_apart(leaf, leaf) * w->flat;
-    leaf->sag = is_slow ? 0.5 * bend * w->flat : 0;
-}
-
-/* Over the triangle, from the values at its corners: no farther off than gradients stray from one
- * another, and a concave leaf is nowhere less than there. */
-static void find_range(const walker *w, const csg_tape_node *node, operand *leaf)
-{
-    const csg_cone_ball *balls = leaf->balls.items;
-    double stray = 0;
-    double slack = (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK];
-    double a = leaf_value(w, node, 0), b = leaf_value(w, node, 1), c = leaf_value(w, node, 2);
-    leaf->low = fmin(a, fmin(b, c)) - slack;
-    leaf->high = fmax(a, fmax(b, c)) + slack;
-    for (uint32_t i = 0; i < leaf->balls.count; i++)
-        stray = fmax(stray, i ? 2 * csg_slopes_balls_apart(&balls[0], &balls[i]) : balls[0].spread);
-    if (leaf->stretched)
-        stray = 2 * fmax(csg_norm3(balls[0].at), leaf->balls.corner);
-    double off = leaf->kink > 0 ? stray * w->flat : leaf->sag;
-    if (!is_concave(node)) {
-        leaf->low -= off;
-        leaf->high += off;
-        return;
-    }
-    bool concave = w->tape->parameters[node->parameters + CSG_LEAF_SIGMA] > 0;
-    double beyond = concave ? leaf->high + off : leaf->low - off;
-    if (leaf->balls.count > 1) {
-        double turn = concave ? 1 : -1;
-        double tangent = tangent_value(w, node, leaf, turn);
-        beyond = concave ? fmin(beyond, tangent) : fmax(beyond, tangent);
-    }
-    *(concave ? &leaf->high : &leaf->low) = beyond;
-}
-
-/* A leaf without a bound of its own. It may have no share in what is there. */
-static void take_any(const walker *w, operand *leaf)
-{
-    double steepest = fmax((double)w->tape->steepest, (double)w->tape->lipschitz);
-    leaf->balls.count = 1;
-    leaf->balls.has_edges = false;
-    leaf->balls.corner = 0;
-    leaf->balls.items[0] = (csg_cone_ball){.at = {0, 0, 0}, .spread = steepest};
-    leaf->balls.bend = INFINITY;
-}
-
-/* Faces that hardly turn, as those of a curve that was cut into segments, are one smooth one. */
-static void join_faces(operand *leaf)
-{
-    static const double NARROW = 0.35; /* of the longest gradient */
-    csg_cone_ball one;
-    for (uint32_t i = 1; i < leaf->balls.count; i++) /* no such ball holds both: most turn more */
-        if (csg_slopes_balls_apart(&leaf->balls.items[0], &leaf->balls.items[i]) >
-            2.01 * NARROW * leaf->longest)
-            return;
-    if (!csg_slopes_enclose(&leaf->balls, leaf->longest, &one) ||
-        !(one.spread <= NARROW * leaf->longest))
-        return;
-    leaf->balls.items[0] = one;
-    leaf->balls.bend = INFINITY;
-    leaf->balls.count = 1;
-    leaf->balls.has_edges = leaf->stretched = leaf->faces = false;
-    leaf->balls.corner = 0;
-}
-
-/* How much it can change within the region. */
-double csg_slopes_span(const walker *w, const operand *leaf)
-{
-    double most = 0;
-    if (leaf->faces || leaf->stretched || leaf->balls.has_edges)
-        return leaf->longest * w->radius;
-    for (uint32_t i = 0; i < leaf->balls.count; i++)
-        most = fmax(most, span_of(w, leaf->balls.items[i].at, leaf->balls.items[i].spread));
-    return most;
-}
-
-static bool push_leaf(walker *w, const csg_tape_node *node)
-{
-    operand *leaf = &w->stack[w->top++];
-    const csg_vec3 at = w->region.c;
-    const float c[3] = {(float)at.x, (float)at.y, (float)at.z};
-    leaf->balls.count = 0;
-    leaf->balls.has_edges = leaf->stretched = false;
-    leaf->value = leaf_value(w, node, CORNERS);
-    leaf->doubt =
-        (double)w->tape->parameters[node->parameters + CSG_LEAF_SLACK] + 1e-6 * fabs(leaf->value);
-    if (!csg_cone_add_leaf(&leaf->balls, w->tape, node, c, w->radius))
-        take_any(w, leaf);
-    leaf->longest = leaf->balls.corner;
-    for (uint32_t i = 0; i < leaf->balls.count; i++) {
-        const csg_cone_ball *ball = &leaf->balls.items[i];
-        leaf->longest = fmax(leaf->longest, csg_norm3(ball->at) + ball->spread);
-    }
-    leaf->faces = leaf->balls.count > 1;
-    for (uint32_t i = 0; i < leaf->balls.count; i++) /* else the frame, or a warp, stretches */
-        leaf->stretched |= leaf->balls.corner > (1 + 1e-4) * csg_norm3(leaf->balls.items[i].at);
-    if (leaf->faces && !is_concave(node))
-        join_faces(leaf);
-    find_sag(w, leaf);
-    find_range(w, node, leaf);
-    double span = csg_slopes_span(w, leaf);
-    leaf->least = leaf->value - span;
-    leaf->most = leaf->value + span;
-    return true;
-}
-
 /* ---- the walk ----------------------------------------------------------------------------------
  */
 
-static bool walk(walker *w)
+/* A subtree, or all of the tape. */
+static bool walk_nodes(walker *w, uint32_t first, uint32_t count)
 {
-    for (uint32_t i = 0; i < w->tape->count; i++) {
+    for (uint32_t i = first; i < first + count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
         bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
         if (csg_op_is_leaf(node->op)) {
             w->nodes[w->top].first = i;
-            known = push_leaf(w, node);
+            known = csg_slopes_push_leaf(w, node);
         } else if (csg_op_is_round(node->op)) {
             known = csg_slopes_join_round(w, node);
         } else if (csg_op_is_fillet(node->op)) {
@@ -519,6 +361,38 @@ static bool walk(walker *w)
         w->nodes[w->top - 1].end = i + 1;
     }
     return true;
+}
+
+/* Parts that touch: one half where the region does not reach the plane, else any of both. */
+static bool join_halves(walker *w, const csg_touching *t)
+{
+    operand *a = &w->stack[0], *b = &w->stack[1];
+    const double slope[3] = {t->slope.x, t->slope.y, t->slope.z};
+    double side = csg_touching_side(t, w->region.c), reach = span_of(w, slope, 0) + t->doubt;
+    w->top = 1;
+    if (side > reach)
+        return true;
+    if (side < -reach) {
+        *a = *b;
+        return true;
+    }
+    a->low = fmin(a->low, b->low) - t->doubt;
+    a->high = fmax(a->high, b->high) + t->doubt;
+    a->least = fmin(a->least, b->least);
+    a->most = fmax(a->most, b->most);
+    a->doubt = fmax(a->doubt, b->doubt) + t->doubt;
+    a->value = side < 0 ? b->value : a->value;
+    return csg_slopes_mix(a, b, (range){0, 1}, true);
+}
+
+static bool walk(walker *w, const csg_touching *t)
+{
+    if (!t->is_there)
+        return walk_nodes(w, 0, t->tape->count);
+    for (int i = 0; i < 2; i++)
+        if (!walk_nodes(w, (uint32_t)(t->halves[i].nodes - t->tape->nodes), t->halves[i].count))
+            return false;
+    return join_halves(w, t);
 }
 
 /* The middle of the balls, whose hull they are in, or where combinations of these may be longer of
@@ -600,18 +474,19 @@ static bool have_triangles(const csg_gradients_region *regions, size_t count)
 {
     bool any = false;
     for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < CORNERS; k++) {
+        for (int k = 0; k < CSG_SLOPES_CORNERS; k++) {
             csg_vec3 v = regions[i].triangle[k], c = regions[i].c;
             any |= v.x != c.x || v.y != c.y || v.z != c.z;
         }
     return any;
 }
 
-void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_touching *field,
                              const csg_gradients_region *regions, size_t count, float *scratch,
                              size_t scratch_floats, csg_gradients *const *out, bool *is_known)
 {
-    enum { PLACES = CORNERS + 1 };
+    const csg_tape *tape = field->tape;
+    enum { PLACES = CSG_SLOPES_CORNERS + 1 };
     float values[CSG_SLOPES_NODES * PLACES * CSG_OCTANTS];
     float x[PLACES * CSG_OCTANTS], y[PLACES * CSG_OCTANTS], z[PLACES * CSG_OCTANTS];
     walker w; /* not filled: its stack is large */
@@ -642,11 +517,11 @@ void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
         w.flat = 0;
         w.top = 0;
         w.has_level = false;
-        for (int k = 0; k < CORNERS; k++)
+        for (int k = 0; k < CSG_SLOPES_CORNERS; k++)
             w.flat = fmax(w.flat, csg_vec3_norm(csg_vec3_sub(w.region.triangle[k], w.region.c)));
         w.normal = normal_of(w.region.triangle);
         w.radius = w.flat + w.region.around + sqrt(3.0) * w.region.half;
-        is_known[i] = walk(&w) && take_result(&w, out[i]);
+        is_known[i] = walk(&w, field) && take_result(&w, out[i]);
     }
 }
 
@@ -655,7 +530,8 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         csg_gradients *out)
 {
     bool is_known;
-    csg_gradients_find_each(kernel, tape, region, 1, scratch, scratch_floats, &out, &is_known);
+    const csg_touching field = csg_touching_none(tape);
+    csg_gradients_find_each(kernel, &field, region, 1, scratch, scratch_floats, &out, &is_known);
     return is_known;
 }
 
@@ -665,19 +541,4 @@ bool csg_gradients_find_axis(const csg_gradients *gradients, csg_cone *out)
         return csg_cone_find_axis(&gradients->balls, out);
     *out = gradients->cone;
     return gradients->has_axis;
-}
-
-double csg_gradients_steepest(const csg_gradients *gradients)
-{
-    double most = 0;
-    if (!(gradients->stray < INFINITY))
-        return INFINITY;
-    if (gradients->exceeds)
-        return sqrt(3.0) * gradients->longest;
-    for (uint32_t i = 0; i < gradients->balls.count; i++) {
-        const csg_cone_ball *ball = &gradients->balls.items[i];
-        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
-        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
-    }
-    return most;
 }

@@ -32,6 +32,7 @@
 #include "base/geometry.h"
 #include "field/cones/cone.h"
 #include "field/kernels/kernel.h"
+#include "mesh/distance/touching.h"
 
 enum { CSG_SLOPES_NODES = 128 /* of a tape; more are not looked at */ };
 
@@ -66,9 +67,9 @@ bool csg_gradients_find(const csg_kernel *kernel, const csg_tape *tape,
                         const csg_gradients_region *region, float *scratch, size_t scratch_floats,
                         csg_gradients *out);
 
-/* The same of up to CSG_OCTANTS regions in which one tape holds: values of leaves are asked for all
- * at once. is_known: of which a bound is known. */
-void csg_gradients_find_each(const csg_kernel *kernel, const csg_tape *tape,
+/* The same of up to CSG_OCTANTS regions in which one tape holds, and what stands for it: values of
+ * leaves are asked for all at once. is_known: of which a bound is known. */
+void csg_gradients_find_each(const csg_kernel *kernel, const csg_touching *field,
                              const csg_gradients_region *regions, size_t count, float *scratch,
                              size_t scratch_floats, csg_gradients *const *out, bool *is_known);
 

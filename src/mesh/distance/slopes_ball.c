@@ -76,3 +76,18 @@ double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b
         return a->longest + b->longest;
     return csg_slopes_sets_apart(&a->balls, &b->balls);
 }
+
+double csg_gradients_steepest(const csg_gradients *gradients)
+{
+    double most = 0;
+    if (!(gradients->stray < INFINITY))
+        return INFINITY;
+    if (gradients->exceeds)
+        return sqrt(3.0) * gradients->longest;
+    for (uint32_t i = 0; i < gradients->balls.count; i++) {
+        const csg_cone_ball *ball = &gradients->balls.items[i];
+        double steepest = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
+        most = fmax(most, steepest + sqrt(3.0) * ball->spread);
+    }
+    return most;
+}

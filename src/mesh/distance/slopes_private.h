@@ -6,6 +6,8 @@
 
 #include "mesh/distance/slopes.h"
 
+enum { CSG_SLOPES_CORNERS = 3 /* of a triangle */ };
+
 /* What one operand can be in the region. */
 typedef struct csg_slopes_operand {
     double value, doubt; /* at c; rounding */
@@ -74,6 +76,8 @@ double csg_slopes_reach(const csg_slopes_walker *w, const csg_slopes_operand *a,
  * have a share, so is kink: it is INFINITY. False: no bound is known. */
 bool csg_slopes_mix(csg_slopes_operand *a, const csg_slopes_operand *b, csg_slopes_range share,
                     bool is_sharp);
+/* A leaf, on top of the stack. */
+bool csg_slopes_push_leaf(csg_slopes_walker *w, const csg_tape_node *node);
 /* Of a round operator, whose operands are on the stack. False: no bound is known. */
 bool csg_slopes_join_round(csg_slopes_walker *w, const csg_tape_node *node);
 /* Of a fillet, whose operands, planes last, are on the stack. False: no bound is known. */

@@ -29,7 +29,7 @@ typedef struct frame {
 
 typedef struct settling {
     const csg_kernel *kernel;
-    const csg_tape *tape;
+    const csg_touching *field;
     double slack;
     float *scratch;
     size_t scratch_floats;
@@ -66,8 +66,8 @@ static void ask(settling *s)
     for (size_t n = s->places; n % CSG_LANES; n++) /* shapes are asked for copies once */
         for (int axis = 0; axis < 3; axis++)
             s->at[axis][n] = s->at[axis][0];
-    s->kernel->values(s->tape, s->at[0], s->at[1], s->at[2], s->places, s->values, s->scratch,
-                      s->scratch_floats);
+    csg_touching_values(s->field, s->kernel, s->at[0], s->at[1], s->at[2], s->places, s->values,
+                        s->scratch, s->scratch_floats);
 }
 
 /* No value, no proof. */
@@ -168,13 +168,13 @@ static void go_on(settling *s, parts *now, double edge)
         ask(s);
 }
 
-void csg_steps_settle(const csg_kernel *kernel, const csg_tape *tape, double slack, float *scratch,
-                      size_t scratch_floats, csg_steps *pieces, size_t count)
+void csg_steps_settle(const csg_kernel *kernel, const csg_touching *field, double slack,
+                      float *scratch, size_t scratch_floats, csg_steps *pieces, size_t count)
 {
     settling s; /* not filled, as lists are not: they are large */
     parts lists[2], *now = &lists[0], *next = &lists[1];
     s.kernel = kernel;
-    s.tape = tape;
+    s.field = field;
     s.slack = slack;
     s.scratch = scratch;
     s.scratch_floats = scratch_floats;

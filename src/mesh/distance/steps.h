@@ -9,7 +9,7 @@
 #define CSG_MESH_DISTANCE_STEPS_H
 
 #include "base/geometry.h"
-#include "field/kernels/kernel.h"
+#include "mesh/distance/touching.h"
 
 enum { CSG_STEPS_MOST_CUTS = 16 /* of a side: gradients may stray so much more than a value is */ };
 
@@ -28,9 +28,10 @@ static inline double csg_steps_off(const csg_steps *piece, double cuts)
     return off < piece->stray / cuts ? off : piece->stray / cuts;
 }
 
-/* Up to CSG_OCTANTS pieces for which one tape holds: a walk over it costs the same for sixteen
+/* Up to CSG_OCTANTS pieces for which one tape holds, and what stands for it, of which their
+ * gradients are: a walk over it costs the same for sixteen
  * places as for six. slack: rounding of values. scratch: as the kernel needs it. */
-void csg_steps_settle(const csg_kernel *kernel, const csg_tape *tape, double slack, float *scratch,
-                      size_t scratch_floats, csg_steps *pieces, size_t count);
+void csg_steps_settle(const csg_kernel *kernel, const csg_touching *field, double slack,
+                      float *scratch, size_t scratch_floats, csg_steps *pieces, size_t count);
 
 #endif
