@@ -10,9 +10,11 @@
  * by its extent along their gradients' difference, which along a straight fillet is none.
  *
  * And how far values at a place x = sum l_i v_i of a triangle may be from sum l_i f(v_i), which its
- * corners say. Of a leaf whose gradients differ by at most jump + bend d over a distance of d that
- * is jump r + bend r^2 / 2, r being how far corners are from some point: it is the sum of
- * l_i (f(v_i) - f(x) - g(x) (v_i - x)), and that of l_i |v_i - x|^2 is at most r^2. An operator
+ * corners say. Of a leaf whose gradients differ by at most bend d over a distance of d that is
+ * bend r^2 / 2, r being how far corners are from some point: it is the sum of
+ * l_i (f(v_i) - f(x) - g(x) (v_i - x)), and that of l_i |v_i - x|^2 is at most r^2. However fast
+ * they turn it is no more than r times how far they are from any vector g_0: in the same sum with
+ * g_0 for g(x) no term is more than that times l_i |v_i - x|. An operator
  * whose shares add up to 1 hands on the most of its operands', and adds what it is not linear by:
  * with h the difference of two operands, which varies over the corners by no more than their
  * gradients' difference along the triangle lets it, half of its second derivative times the square

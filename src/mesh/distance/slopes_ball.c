@@ -42,21 +42,44 @@ bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ba
            csg_slopes_enclose_around(balls, &cone, longest, out);
 }
 
+/* Weights of the balls' vectors that gradients are combinations of add up to no more. Along an axis
+ * that all climb by `least` each weight is paid for. INFINITY: not known. */
+static double most_weight(const csg_slopes_operand *o)
+{
+    csg_cone cone;
+    if (!csg_slopes_exceed_hull(o))
+        return 1;
+    return csg_cone_find_axis(&o->balls, &cone) ? fmax(1, o->longest / (0.999 * cone.least))
+                                                : INFINITY;
+}
+
+/* What it changes by along a side of the triangle. weight: as above. */
+static csg_slopes_range change_along(const csg_slopes_operand *o, double weight, csg_vec3 side)
+{
+    double length = csg_vec3_norm(side), longest = o->longest * length;
+    csg_slopes_range r = {INFINITY, -INFINITY};
+    if (!(weight < INFINITY))
+        return (csg_slopes_range){-longest, longest};
+    for (uint32_t i = 0; i < o->balls.count; i++) {
+        const csg_cone_ball *ball = &o->balls.items[i];
+        double along = ball->at[0] * side.x + ball->at[1] * side.y + ball->at[2] * side.z;
+        r.low = fmin(r.low, along - ball->spread * length);
+        r.high = fmax(r.high, along + ball->spread * length);
+    }
+    return (csg_slopes_range){fmin(r.low, weight * r.low), fmax(r.high, weight * r.high)};
+}
+
 double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *a,
                           const csg_slopes_operand *b)
 {
     const csg_vec3 *v = w->region.triangle;
+    double most = 0, weight_a = most_weight(a), weight_b = most_weight(b);
     if (!(w->flat > 0))
         return 0;
-    bool is_one = a->balls.count == 1 && b->balls.count == 1 && !csg_slopes_exceed_hull(a) &&
-                  !csg_slopes_exceed_hull(b);
-    const csg_cone_ball *p = &a->balls.items[0], *q = &b->balls.items[0];
-    const csg_vec3 d = {p->at[0] - q->at[0], p->at[1] - q->at[1], p->at[2] - q->at[2]};
-    double apart = is_one ? p->spread + q->spread : csg_slopes_apart(a, b), most = 0;
     for (int i = 0; i < 3; i++) {
         csg_vec3 side = csg_vec3_sub(v[(i + 1) % 3], v[i]);
-        double along = is_one ? fabs(csg_vec3_dot(d, side)) : 0;
-        most = fmax(most, along + apart * csg_vec3_norm(side));
+        csg_slopes_range p = change_along(a, weight_a, side), q = change_along(b, weight_b, side);
+        most = fmax(most, fmax(p.high - q.low, q.high - p.low));
     }
     return most;
 }

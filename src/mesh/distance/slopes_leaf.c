@@ -63,12 +63,31 @@ static double tangent_value(const walker *w, const csg_tape_node *node, const op
     return is_tangent ? value + turn * (most + slack) : turn * INFINITY;
 }
 
-/* Gradients turn, or in the end are apart, however fast they turn. */
+/* How far gradients are at most from some vector. Longer combinations of unit vectors than their
+ * hull has are in a ball around these, too; none is farther from 0 than the longest. */
+static double radius_of(const operand *leaf)
+{
+    const csg_cone_balls *balls = &leaf->balls;
+    csg_cone_ball middle = {.at = {0, 0, 0}};
+    double radius = 0;
+    if (csg_slopes_exceed_hull(leaf))
+        return csg_slopes_enclose(balls, leaf->longest, &middle)
+                   ? fmin(middle.spread, leaf->longest)
+                   : leaf->longest;
+    for (uint32_t i = 0; i < balls->count; i++)
+        for (int k = 0; k < 3; k++)
+            middle.at[k] += balls->items[i].at[k] / balls->count;
+    for (uint32_t i = 0; i < balls->count; i++)
+        radius = fmax(radius, csg_slopes_balls_apart(&middle, &balls->items[i]));
+    return radius;
+}
+
+/* Gradients turn, or in the end are off the middle of all, however fast they turn. */
 static void find_sag(const walker *w, operand *leaf)
 {
     double bend = leaf->balls.bend * w->flat;
     bool is_slow = bend < 2 * leaf->balls.items[0].spread;
-    leaf->kink = is_slow || !(w->flat > 0) ? 0 : csg_slopes_apart(leaf, leaf) * w->flat;
+    leaf->kink = is_slow || !(w->flat > 0) ? 0 : radius_of(leaf) * w->flat;
     leaf->sag = is_slow ? 0.5 * bend * w->flat : 0;
 }
 
