@@ -409,17 +409,15 @@ static void find_stray(const walker *w, const operand *root, csg_gradients *out)
         if (out->has_axis && csg_slopes_enclose_around(balls, &out->cone, root->longest, &middle))
             out->stray = out->across = middle.spread;
     } else if (balls->count) {
-        for (uint32_t i = 0; i < balls->count; i++)
-            for (int k = 0; k < 3; k++)
-                middle.at[k] += balls->items[i].at[k] / balls->count;
-        out->stray = out->across = 0;
+        middle = csg_slopes_ball_around(balls);
+        out->stray = middle.spread;
+        out->across = 0;
         for (uint32_t i = 0; i < balls->count; i++) {
             const csg_cone_ball *ball = &balls->items[i];
             csg_vec3 off = {ball->at[0] - middle.at[0], ball->at[1] - middle.at[1],
                             ball->at[2] - middle.at[2]};
             double square = csg_vec3_dot(off, off), along = csg_vec3_dot(off, w->normal);
             double across = square > along * along ? sqrt(square - along * along) : 0;
-            out->stray = fmax(out->stray, sqrt(square) + ball->spread);
             out->across = fmax(out->across, across + ball->spread);
         }
     }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * One ball around all gradients that have an axis in common, and how far those of two operands are
- * from each other; see slopes.h.
+ * One ball around gradients, and how far those of two operands are from each other; see slopes.h.
  */
 #include <math.h>
 
@@ -42,15 +41,29 @@ bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ba
            csg_slopes_enclose_around(balls, &cone, longest, out);
 }
 
-/* Weights of the balls' vectors that gradients are combinations of add up to no more. Along an axis
- * that all climb by `least` each weight is paid for. INFINITY: not known. */
-static double most_weight(const csg_slopes_operand *o)
+csg_cone_ball csg_slopes_ball_around(const csg_cone_balls *balls)
+{
+    csg_cone_ball middle = {.at = {0, 0, 0}};
+    double radius = 0;
+    for (uint32_t i = 0; i < balls->count; i++)
+        for (int k = 0; k < 3; k++)
+            middle.at[k] += balls->items[i].at[k] / balls->count;
+    for (uint32_t i = 0; i < balls->count; i++)
+        radius = fmax(radius, csg_slopes_balls_apart(&middle, &balls->items[i]));
+    middle.spread = radius;
+    return middle;
+}
+
+/* Along the axis that all climb by `least` each weight is paid for. */
+double csg_slopes_weight(const csg_cone_balls *balls, double longest)
 {
     csg_cone cone;
-    if (!csg_slopes_exceed_hull(o))
-        return 1;
-    return csg_cone_find_axis(&o->balls, &cone) ? fmax(1, o->longest / (0.999 * cone.least))
-                                                : INFINITY;
+    return csg_cone_find_axis(balls, &cone) ? fmax(1, longest / (0.999 * cone.least)) : INFINITY;
+}
+
+static double weight_of(const csg_slopes_operand *o)
+{
+    return csg_slopes_exceed_hull(o) ? csg_slopes_weight(&o->balls, o->longest) : 1;
 }
 
 /* What it changes by along a side of the triangle. weight: as above. */
@@ -73,7 +86,7 @@ double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *
                           const csg_slopes_operand *b)
 {
     const csg_vec3 *v = w->region.triangle;
-    double most = 0, weight_a = most_weight(a), weight_b = most_weight(b);
+    double most = 0, weight_a = weight_of(a), weight_b = weight_of(b);
     if (!(w->flat > 0))
         return 0;
     for (int i = 0; i < 3; i++) {
@@ -91,13 +104,6 @@ double csg_slopes_sets_apart(const csg_cone_balls *a, const csg_cone_balls *b)
         for (uint32_t k = 0; k < b->count; k++)
             most = fmax(most, csg_slopes_balls_apart(&a->items[i], &b->items[k]));
     return most;
-}
-
-double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b)
-{
-    if (csg_slopes_exceed_hull(a) || csg_slopes_exceed_hull(b))
-        return a->longest + b->longest;
-    return csg_slopes_sets_apart(&a->balls, &b->balls);
 }
 
 double csg_gradients_steepest(const csg_gradients *gradients)

@@ -67,19 +67,12 @@ static double tangent_value(const walker *w, const csg_tape_node *node, const op
  * hull has are in a ball around these, too; none is farther from 0 than the longest. */
 static double radius_of(const operand *leaf)
 {
-    const csg_cone_balls *balls = &leaf->balls;
-    csg_cone_ball middle = {.at = {0, 0, 0}};
-    double radius = 0;
-    if (csg_slopes_exceed_hull(leaf))
-        return csg_slopes_enclose(balls, leaf->longest, &middle)
-                   ? fmin(middle.spread, leaf->longest)
-                   : leaf->longest;
-    for (uint32_t i = 0; i < balls->count; i++)
-        for (int k = 0; k < 3; k++)
-            middle.at[k] += balls->items[i].at[k] / balls->count;
-    for (uint32_t i = 0; i < balls->count; i++)
-        radius = fmax(radius, csg_slopes_balls_apart(&middle, &balls->items[i]));
-    return radius;
+    csg_cone_ball around;
+    if (!csg_slopes_exceed_hull(leaf))
+        return csg_slopes_ball_around(&leaf->balls).spread;
+    return csg_slopes_enclose(&leaf->balls, leaf->longest, &around)
+               ? fmin(around.spread, leaf->longest)
+               : leaf->longest;
 }
 
 /* Gradients turn, or in the end are off the middle of all, however fast they turn. */

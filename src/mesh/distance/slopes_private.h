@@ -94,6 +94,11 @@ bool csg_slopes_enclose_around(const csg_cone_balls *balls, const csg_cone *axis
                                csg_cone_ball *out);
 /* The same of any; false also where they have no axis in common. */
 bool csg_slopes_enclose(const csg_cone_balls *balls, double longest, csg_cone_ball *out);
+/* One around the balls, and so around their hull. */
+csg_cone_ball csg_slopes_ball_around(const csg_cone_balls *balls);
+/* Combinations of the balls' vectors, none longer than that: their weights add up to no more.
+ * INFINITY: not known. */
+double csg_slopes_weight(const csg_cone_balls *balls, double longest);
 /* Whether gradients need not be in the hull of the balls. */
 static inline bool csg_slopes_exceed_hull(const csg_slopes_operand *o)
 {
@@ -105,10 +110,9 @@ static inline double csg_slopes_balls_apart(const csg_cone_ball *a, const csg_co
     return csg_norm3(d) + a->spread + b->spread;
 }
 
+/* How far gradients in the hulls of two sets can be from each other. */
 double csg_slopes_sets_apart(const csg_cone_balls *a, const csg_cone_balls *b);
 
-/* How far gradients of two operands, or of one, can be from each other. */
-double csg_slopes_apart(const csg_slopes_operand *a, const csg_slopes_operand *b);
 /* How far apart the differences of two operands can be at any two corners of the triangle. */
 double csg_slopes_parting(const csg_slopes_walker *w, const csg_slopes_operand *a,
                           const csg_slopes_operand *b);

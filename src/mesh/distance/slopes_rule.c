@@ -40,28 +40,18 @@ static const which WHICH[] = {CSG_SLOPES_MIDDLE, CSG_SLOPES_LOW, CSG_SLOPES_HIGH
 /* One ball around those whose hull is meant. */
 static void gather(csg_cone_balls *balls)
 {
-    csg_cone_ball one = {.at = {0, 0, 0}};
-    for (uint32_t i = 0; i < balls->count; i++)
-        for (int k = 0; k < 3; k++)
-            one.at[k] += balls->items[i].at[k] / balls->count;
-    double spread = 0;
-    for (uint32_t i = 0; i < balls->count; i++)
-        spread = fmax(spread, csg_slopes_balls_apart(&one, &balls->items[i]));
-    one.spread = spread;
-    balls->items[0] = one;
+    balls->items[0] = csg_slopes_ball_around(balls);
     balls->count = 1;
 }
 
-/* Combinations by weights that add up to 1 and more, none of them longer than `longest`: along an
- * axis that all climb by `least` each weight is paid for, so they add up to longest / least at
- * most, and those are in the hull of the balls and of these so much longer. False: too many, or no
- * axis. */
+/* Combinations by weights that add up to 1 and more, none of them longer than `longest`, are in the
+ * hull of the balls and of these as much longer as the weights can be. False: too many, or no axis.
+ */
 static bool lengthen(csg_cone_balls *balls, double longest)
 {
-    csg_cone cone;
-    if (2 * balls->count > FEW_BALLS || !csg_cone_find_axis(balls, &cone))
+    double times = 2 * balls->count > FEW_BALLS ? INFINITY : csg_slopes_weight(balls, longest);
+    if (!(times < INFINITY))
         return false;
-    double times = fmax(1, longest / (0.999 * cone.least));
     for (uint32_t i = 0, count = balls->count; i < count; i++) {
         csg_cone_ball *out = &balls->items[balls->count++];
         for (int k = 0; k < 3; k++)
@@ -367,17 +357,9 @@ static bool join_lengths(walker *w, const csg_tape_node *node)
     csg_rule_bound_share(&rule, k, t - reach - rounding * support, t + reach + rounding * support,
                          share);
     if (share[0] == share[1] && (share[0] == 0 || share[0] == 1)) {
-        range alone = {share[0], share[1]};
-        bool is_known = csg_slopes_mix(a, b, alone, false);
-        if (share[0] == 0) {
-            a->value = b->value;
-            a->doubt = b->doubt;
-            a->low = b->low;
-            a->high = b->high;
-            a->least = b->least;
-            a->most = b->most;
-        }
-        return is_known;
+        if (share[0] == 0)
+            *a = *b;
+        return true;
     }
     const range by[2] = {{share[0] - rounding, share[1] + rounding},
                          {1 - share[1] - rounding, 1 - share[0] + rounding}};
