@@ -23,14 +23,13 @@ static bool is_constant(const jet *a)
     return is_nothing(a->first[0]) && is_nothing(a->first[1]) && is_nothing(a->first[2]);
 }
 
-/* The second derivative of what takes one operand; v its value, by the slope. */
+/* The second derivative of what takes one operand, but for a kink; v its value, by the slope. */
 static range bend_of(uint8_t op, range a, range v, range by)
 {
     switch (op) {
     case CSG_FORMULA_NEG:
-        return NOTHING;
     case CSG_FORMULA_ABS:
-        return by.low < by.high ? UNKNOWN : NOTHING;
+        return NOTHING;
     case CSG_FORMULA_SIN:
     case CSG_FORMULA_COS:
         return range_neg(v, v);
@@ -81,13 +80,25 @@ static jet bend_two(uint8_t op, const jet *a, const jet *b, range value)
     return out;
 }
 
-/* The operand that counts all over the box. False: either may. */
-static bool find_extreme(uint8_t op, const jet *a, const jet *b, jet *out)
+static range either(range a, range b)
+{
+    return is_known(a) && is_known(b) ? (range){fminf(a.low, b.low), fmaxf(a.high, b.high)}
+                                      : UNKNOWN;
+}
+
+/* The operand that counts all over the box, or what holds both. */
+static jet extreme_of(uint8_t op, const jet *a, const jet *b, range value)
 {
     bool is_a = op == CSG_FORMULA_MIN ? a->value.high < b->value.low : a->value.low > b->value.high;
     bool is_b = op == CSG_FORMULA_MIN ? b->value.high < a->value.low : b->value.low > a->value.high;
-    *out = is_a ? *a : *b;
-    return is_a || is_b;
+    if (is_a || is_b)
+        return is_a ? *a : *b;
+    jet out = {.value = value};
+    for (int k = 0; k < 3; k++)
+        out.first[k] = either(a->first[k], b->first[k]);
+    for (int k = 0; k < SECONDS; k++)
+        out.second[k] = either(a->second[k], b->second[k]);
+    return out;
 }
 
 /* False: nothing is known. */
@@ -96,9 +107,9 @@ static bool run_step(const csg_tape_step *step, const jet *a, const jet *b, jet 
     range by_a, by_b,
         value = a == b && step->op == CSG_FORMULA_MUL ? range_square(a->value, a->value)
                                                       : value_of(step->op, a->value, b->value);
-    if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX)
-        return find_extreme(step->op, a, b, out);
-    if (csg_formula_op_is_unary(step->op) && is_constant(a)) {
+    if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX) {
+        *out = extreme_of(step->op, a, b, value);
+    } else if (csg_formula_op_is_unary(step->op) && is_constant(a)) {
         *out = (jet){.value = value};
     } else if (csg_formula_op_is_unary(step->op)) {
         by_a = slope_of(step->op, a->value, value);
@@ -156,12 +167,38 @@ static bool may_change_sides(const csg_tape *tape, const csg_tape_formula *formu
     return false;
 }
 
-bool csg_bend_formula(const csg_tape *tape, const csg_tape_formula *formula, const csg_cone_box *at,
-                      double *bend)
+static double size_of(range a)
 {
-    if (may_change_sides(tape, formula, at))
+    return fmax(fabs((double)a.low), fabs((double)a.high));
+}
+
+/* Notes a kink at the step. False: there are too many. */
+static bool note_kink(const csg_tape_step *step, uint32_t at, const jet *a, const jet *b,
+                      csg_formula_pieces *out)
+{
+    static const jet ZERO = {.value = {0, 0}};
+    const jet *other = step->op == CSG_FORMULA_ABS ? &ZERO : b;
+    bool is_choice = step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX;
+    if (!(is_choice || step->op == CSG_FORMULA_ABS) || a->value.low > other->value.high ||
+        other->value.low > a->value.high)
+        return true;
+    if (out->kink_count == CSG_MOST_KINKS)
         return false;
+    double squares = 0;
+    for (int k = 0; k < 3; k++) {
+        range apart = range_sub(a->first[k], other->first[k]);
+        squares += size_of(apart) * size_of(apart);
+    }
+    out->kinks[out->kink_count++] =
+        (csg_kink){at, sqrt(squares) * (1 + 1e-12), fmax(size_of(a->value), size_of(other->value))};
+    return true;
+}
+
+bool csg_bend_pieces(const csg_tape *tape, const csg_tape_formula *formula, const csg_cone_box *at,
+                     csg_formula_pieces *out)
+{
     jet slots[CSG_FORMULA_SLOTS], constant = {.value = NOTHING};
+    out->kink_count = 0;
     for (int i = 0; i < 3; i++) {
         slots[i] = (jet){.value = {at->low[i], at->high[i]}};
         slots[i].first[i] = ONE;
@@ -174,13 +211,23 @@ bool csg_bend_formula(const csg_tape *tape, const csg_tape_formula *formula, con
             a = &constant;
         else if (step->constant == CSG_CONSTANT_B)
             b = &constant;
-        if (!run_step(step, a, b, &slots[step->out]))
+        if (!note_kink(step, s, a, b, out) || !run_step(step, a, b, &slots[step->out]))
             return false;
     }
     const jet *result = &slots[formula->result];
     for (int k = 0; k < SECONDS; k++)
         if (!is_known(result->second[k]))
             return false;
-    *bend = norm_of_matrix(result->second);
-    return *bend < 1e9;
+    out->bend = norm_of_matrix(result->second);
+    return out->bend < 1e9;
+}
+
+bool csg_bend_formula(const csg_tape *tape, const csg_tape_formula *formula, const csg_cone_box *at,
+                      double *bend)
+{
+    csg_formula_pieces pieces;
+    if (may_change_sides(tape, formula, at) || !csg_bend_pieces(tape, formula, at, &pieces))
+        return false;
+    *bend = pieces.bend;
+    return true;
 }

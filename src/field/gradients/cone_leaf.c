@@ -5,7 +5,6 @@
  */
 #include <math.h>
 
-#include "field/gradients/bend_formula.h"
 #include "field/gradients/cone_curve.h"
 #include "field/gradients/cone_formula.h"
 #include "field/gradients/cone_leaf.h"
@@ -238,33 +237,71 @@ static bool is_within_domain(const csg_cone_box seeds[3])
     return seeds[0].low[0] > 0 && seeds[1].low[1] > 0 && seeds[2].low[2] > 0;
 }
 
+/* A formula around a point. */
+typedef struct placed_formula {
+    csg_cone_leaf leaf;
+    const csg_tape_formula *formula;
+    csg_cone_box box, seeds[3];
+    double norm, slack; /* of the frame, and of places in it */
+} placed_formula;
+
+/* False: it is none, or one that somewhere in the ball is no function of the coordinates. */
+static bool place_formula(placed_formula *p, const csg_tape *tape, const csg_tape_node *leaf,
+                          const float c[3], double radius)
+{
+    double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
+    double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    *p = (placed_formula){.leaf = {.rho = radius + slack}};
+    if (leaf->op != CSG_OP_FIELD || leaf->warp)
+        return false;
+    place(&p->leaf, tape, leaf, at);
+    p->formula = &tape->formulas[(uint32_t)p->leaf.own[0]];
+    p->norm = p->leaf.rho / (radius + slack);
+    p->slack = slack * p->norm;
+    place_box(&p->leaf, p->formula, &p->box, p->seeds);
+    return is_within_domain(p->seeds);
+}
+
+/* By what the formula's own is, in its frame. */
+static double bend_in_tape(const placed_formula *p, double own)
+{
+    return p->leaf.norm * p->norm * own * (1 + 1e-6);
+}
+
 bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                         double radius, csg_cone_ball *g, double *bend)
 {
-    double at[3] = {(double)c[0], (double)c[1], (double)c[2]}, own;
-    double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
     csg_cone_balls balls = {.count = 0};
-    csg_cone_leaf l = {.balls = &balls, .rho = radius + slack};
-    csg_cone_box box, seeds[3], gradient;
+    placed_formula p;
+    csg_cone_box gradient;
+    double own;
     bool has_edges = false;
-    if (leaf->op != CSG_OP_FIELD || leaf->warp)
+    if (!place_formula(&p, tape, leaf, c, radius) ||
+        !csg_bend_formula(tape, p.formula, &p.box, &own))
         return false;
-    place(&l, tape, leaf, at);
-    const csg_tape_formula *formula = &tape->formulas[(uint32_t)l.own[0]];
-    double norm = l.rho / (radius + slack); /* of the frame */
-    place_box(&l, formula, &box, seeds);
-    if (!is_within_domain(seeds) || !csg_bend_formula(tape, formula, &box, &own))
-        return false;
-    l.rho = slack * norm;
-    place_box(&l, formula, &box, seeds);
-    if (!csg_cone_formula(tape, formula, &box, seeds, &gradient, &has_edges) || has_edges)
+    p.leaf.balls = &balls;
+    p.leaf.rho = p.slack;
+    place_box(&p.leaf, p.formula, &p.box, p.seeds);
+    if (!csg_cone_formula(tape, p.formula, &p.box, p.seeds, &gradient, &has_edges) || has_edges)
         return false;
     double middle[3], half[3];
     middle_of_box(&gradient, middle, half);
-    *bend = l.norm * norm * own * (1 + 1e-6);
-    if (!csg_cone_add(&l, middle[0], middle[1], middle[2], csg_norm3(half)))
+    *bend = bend_in_tape(&p, own);
+    if (!csg_cone_add(&p.leaf, middle[0], middle[1], middle[2], csg_norm3(half)))
         return false;
     *g = balls.items[0];
+    return true;
+}
+
+bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                          double radius, csg_formula_pieces *out)
+{
+    placed_formula p;
+    if (!place_formula(&p, tape, leaf, c, radius) || !csg_bend_pieces(tape, p.formula, &p.box, out))
+        return false;
+    out->bend = bend_in_tape(&p, out->bend);
+    for (uint32_t i = 0; i < out->kink_count; i++)
+        out->kinks[i].slope *= p.norm;
     return true;
 }
 

@@ -5,6 +5,7 @@
 #ifndef CSG_FIELD_CONE_LEAF_H
 #define CSG_FIELD_CONE_LEAF_H
 
+#include "field/gradients/bend_formula.h"
 #include "field/tape.h"
 #include "scene/primitives/cone_ball.h"
 
@@ -20,6 +21,11 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
  * is no formula, or nothing is known. */
 bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                         double radius, csg_cone_ball *g, double *bend);
+
+/* The same of the pieces that a formula is made of, between its kinks: where these are is told by
+ * csg_kink_values(). */
+bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
+                          double radius, csg_formula_pieces *out);
 
 /* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
  * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is

@@ -190,6 +190,12 @@ typedef struct csg_found_loop {
     bool wide;                              /* its corners' normals lie far apart */
 } csg_found_loop;
 
+/* The cells of a block that may have features, by row of cells, 8 z + y, a bit each: possible.h. */
+typedef struct csg_possible_cells {
+    uint8_t any[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE];
+    uint8_t tips[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* of these: no gradient jumps in them */
+} csg_possible_cells;
+
 /* One thread's room. */
 typedef struct csg_feature_room {
     csg_edges edges;
@@ -202,7 +208,7 @@ typedef struct csg_feature_room {
     uint32_t loop_count;
     uint8_t joined[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by cell: pair.h */
     bool any_joined;
-    uint8_t possible[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]; /* by row of cells, a bit each: possible.h */
+    csg_possible_cells possible;
     float x[CSG_FEATURE_SEGMENTS], y[CSG_FEATURE_SEGMENTS], z[CSG_FEATURE_SEGMENTS];
     float f[CSG_FEATURE_SEGMENTS], g[3][CSG_FEATURE_SEGMENTS];
     uint32_t which[CSG_FEATURE_SEGMENTS];

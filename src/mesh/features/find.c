@@ -41,7 +41,7 @@ static void mark_edges(const csg_feature_room *room, edge_rows *rows)
     memset(rows, 0, sizeof *rows);
     for (int k = 0; k < E; k++)
         for (int j = 0; j < E; j++) {
-            unsigned cells = room->possible[k * E + j], ends = cells | cells << 1;
+            unsigned cells = room->possible.any[k * E + j], ends = cells | cells << 1;
             for (int side = 0; side < 2; side++) {
                 rows->bits[0][k][j + side] |= (uint16_t)cells;
                 rows->bits[0][k + 1][j + side] |= (uint16_t)cells;
@@ -114,6 +114,22 @@ static float widest_of(const csg_feature_room *room, const csg_found_loop *loop)
     return widest;
 }
 
+/* False: no two of its corners are as far apart, told without a root. */
+static bool may_be_wide(const csg_feature_room *room, const csg_found_loop *loop)
+{
+    static const float LEAST = WIDE * WIDE + 1e-4f; /* of the square of the cosine */
+    for (int a = 0; a < loop->side_count; a++)
+        for (int b = a + 1; b < loop->side_count; b++) {
+            const float *g = room->gradient[loop->slot[a]], *h = room->gradient[loop->slot[b]];
+            float gh = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
+            float gg = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+            float hh = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
+            if (!(gh > 0 && gh * gh > LEAST * gg * hh))
+                return true;
+        }
+    return false;
+}
+
 /* Loops with a segment to look at, or around what may be a tip. */
 static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, unsigned pattern,
                      const csg_cell_loops *loops, int index)
@@ -136,12 +152,15 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
             (uint16_t)(edge / 4 * CSG_BLOCK_POINTS + ((k + o[2]) * N + j + o[1]) * N + i + o[0]);
         loop->crease[s] = -1;
     }
+    bool may_jump = !(room->possible.tips[cell / E] >> cell % E & 1);
+    if (!may_jump && !loop->joined && !may_be_wide(room, loop))
+        return;
     float widest = widest_of(room, loop);
     if (1.0f - widest <= LEAST_DIFFERENCE && !loop->joined)
         return;
     bool any = loop->wide = widest < WIDE;
     any |= loop->joined != 0;
-    for (int s = 0; s < loop->side_count; s++)
+    for (int s = 0; s < loop->side_count && may_jump; s++)
         any |= add_segment(room, loop, s);
     room->loop_count += any;
 }
@@ -149,7 +168,7 @@ static void add_loop(const csg_marching *m, csg_feature_room *room, int cell, un
 /* All loops of a cell with a joined face are features. */
 static bool may_crease(const csg_feature_room *room, int cell)
 {
-    return room->possible[cell / E] >> cell % E & 1 || (room->any_joined && room->joined[cell]);
+    return room->possible.any[cell / E] >> cell % E & 1 || (room->any_joined && room->joined[cell]);
 }
 
 static void collect_loops(const csg_marching *m, const csg_block *block, csg_feature_room *room)
@@ -426,7 +445,7 @@ static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_
                           csg_memory *memory)
 {
     const csg_marching *m = probe->marching;
-    bool possible = csg_feature_find_possible(probe, room->possible);
+    bool possible = csg_feature_find_possible(probe, &room->possible);
     bool has_pairs = csg_feature_has_pairs(block);
     if (!possible && !has_pairs)
         return true;

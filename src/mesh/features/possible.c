@@ -19,15 +19,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/gradients/cone_leaf.h"
 #include "grid/octree/octree.h"
 #include "mesh/features/facets.h"
+#include "mesh/features/formulas.h"
 #include "scene/operators/blend_kinds.h"
 
 enum { PART_CELLS = CSG_PART_EDGE * CSG_PART_EDGE * CSG_PART_EDGE };
 
-/* sqrt(3) / 2, rounded up: of a cube's diagonal, in edges. */
-static const float HALF_DIAGONAL = 0.8661f;
 typedef struct ball {
     float at[3], radius;
 } ball;
@@ -112,7 +110,7 @@ static bool tape_may_crease(const csg_tape *tape, const csg_tape_node *nodes, ui
 /* Of one part of the block: the ball around it. */
 static ball ball_of(const csg_feature_probe *probe, int octant, float cell)
 {
-    ball at = {.radius = HALF_DIAGONAL * CSG_PART_EDGE * cell};
+    ball at = {.radius = CSG_FEATURE_HALF_DIAGONAL * CSG_PART_EDGE * cell};
     for (int axis = 0; axis < 3; axis++)
         at.at[axis] = probe->line[axis][CSG_PART_EDGE * (octant >> axis & 1) + CSG_PART_EDGE / 2];
     return at;
@@ -162,7 +160,8 @@ typedef struct part_cells {
     float x[PART_CELLS], y[PART_CELLS], z[PART_CELLS], f[PART_CELLS];
     uint8_t leaves[PART_CELLS];
     near_leaf near[PART_CELLS][MOST_NEAR];
-    bool may_crease[PART_CELLS];
+    bool is_lone[PART_CELLS]; /* a formula is the field, where it has no kink */
+    csg_cell_look looks[PART_CELLS];
 } part_cells;
 
 static float middle(const float *line, int i)
@@ -189,7 +188,8 @@ static void gather_cells(const csg_feature_probe *probe, int octant, part_cells 
             cells->y[n] = middle(probe->line[1], j);
             cells->z[n] = middle(probe->line[2], k);
             cells->leaves[n] = 0;
-            cells->may_crease[n] = false;
+            cells->is_lone[n] = false;
+            cells->looks[n] = CSG_LOOK_NOTHING;
         }
     }
 }
@@ -270,152 +270,175 @@ static void find_values(csg_feature_probe *probe, const csg_tape *leaf, bool is_
     probe->evaluations += cells->count;
 }
 
+/* A part of the block. */
+typedef struct part_look {
+    const csg_block_part *part;
+    bool still;                         /* formulas do not crease in it */
+    const csg_block_formulas *formulas; /* of the block */
+} part_look;
+
+/* The only formula of a part, if others stand beside it. NULL: there is none. */
+static const csg_tape_node *formula_among(const csg_block_part *part)
+{
+    const csg_tape_node *found = NULL;
+    uint32_t formulas = 0, others = 0;
+    for (uint32_t i = 0; i < part->node_count; i++) {
+        bool is_formula = part->nodes[i].op == CSG_OP_FIELD;
+        found = is_formula ? &part->nodes[i] : found;
+        formulas += is_formula;
+        others += !is_formula && csg_op_is_leaf(part->nodes[i].op);
+    }
+    return formulas == 1 && others ? found : NULL;
+}
+
+/* Where the field is a formula's at both ends of a segment and all other leaves are farther from
+ * zero than that gets on it, they stay on the sides of it on which they are: the field is the
+ * formula's all along. Other leaves are as steep as distances. */
+static void find_lone(csg_feature_probe *probe, const part_look *look, part_cells *cells)
+{
+    const csg_tape_node *formula = formula_among(look->part);
+    csg_tape_node alone;
+    if (!formula)
+        return;
+    csg_tape tape = csg_feature_leaf_alone(probe, formula, &alone);
+    const csg_formula_pieces *pieces = csg_feature_pieces_of(look->formulas, &tape);
+    if (!pieces)
+        return;
+    float cell = (float)probe->marching->lattice->cell_size;
+    float climb = 1.01f * CSG_FEATURE_HALF_DIAGONAL * cell + probe->marching->noise + tape.waver;
+    float least = climb + (float)csg_feature_formula_sag(probe, &tape, pieces);
+    for (size_t i = 0; i < cells->count; i++)
+        cells->is_lone[i] = true;
+    for (uint32_t k = 0; k < look->part->node_count; k++) {
+        const csg_tape_node *node = &look->part->nodes[k];
+        if (node == formula || !csg_op_is_leaf(node->op))
+            continue;
+        tape = csg_feature_leaf_alone(probe, node, &alone);
+        find_values(probe, &tape, false, cells);
+        for (size_t i = 0; i < cells->count; i++)
+            cells->is_lone[i] = cells->is_lone[i] && fabsf(cells->f[i]) > least;
+    }
+}
+
+/* What one leaf, alone on its tape, may have in cells where its own value may be within -off..off.
+ */
+static void look_at_leaf(csg_feature_probe *probe, const part_look *look, const csg_tape *leaf,
+                         float off, const part_cells *cells, csg_cell_look *looks)
+{
+    const csg_tape_node *node = leaf->nodes;
+    const csg_formula_cells all = {cells->cell, cells->x, cells->y, cells->z, cells->count};
+    float cell = (float)probe->marching->lattice->cell_size;
+    csg_shape_balls balls;
+    if (node->op == CSG_OP_FIELD && !look->still) {
+        csg_feature_look_at_formula(probe, leaf, csg_feature_pieces_of(look->formulas, leaf), &all,
+                                    looks);
+        return;
+    }
+    if (node->op == CSG_OP_SHAPE)
+        csg_feature_find_facets(leaf, node, cell, cells->x, cells->y, cells->z, cells->count,
+                                &balls);
+    for (size_t i = 0; i < cells->count; i++) {
+        ball at = {{cells->x[i], cells->y[i], cells->z[i]}, CSG_FEATURE_HALF_DIAGONAL * cell};
+        bool any = node->op == CSG_OP_SHAPE
+                       ? balls.may_crease[i]
+                       : leaf_may_crease(leaf, node, at, (csg_band){-off, off}, look->still);
+        looks[i] = any ? CSG_LOOK_ALL : CSG_LOOK_NOTHING;
+    }
+}
+
 /* A segment of a polygon runs between two points of the surface in one cell, so that no point of it
  * is farther than half a diagonal from one of them, and f there no farther from zero than it can
  * climb on that way; the leaf that f is has come from there, and not more from the cell's centre.
  */
-static void count_leaf(csg_feature_probe *probe, const csg_tape_node *node, bool still,
-                       bool is_alone, part_cells *cells)
+static void count_leaf(csg_feature_probe *probe, const part_look *look, const csg_tape_node *node,
+                       part_cells *cells)
 {
-    csg_tape_node alone = *node;
-    csg_tape tape = probe->marching->field->tape;
-    csg_shape_balls balls;
-    bool is_shape = node->op == CSG_OP_SHAPE;
+    csg_tape_node alone;
+    csg_tape tape = csg_feature_leaf_alone(probe, node, &alone);
+    csg_cell_look looks[PART_CELLS];
     float cell = (float)probe->marching->lattice->cell_size;
     float slack = probe->marching->noise + tape.waver;
-    float off = 1.01f * HALF_DIAGONAL * cell * tape.lipschitz + slack;
-    float reach = off + 1.01f * HALF_DIAGONAL * cell * fmaxf(tape.steepest, 1.0f) + slack;
-    alone.join = CSG_JOIN_NONE;
-    tape.nodes = &alone;
-    tape.count = 1;
-    find_values(probe, &tape, is_alone, cells);
-    if (is_shape)
-        csg_feature_find_facets(&tape, node, cell, cells->x, cells->y, cells->z, cells->count,
-                                &balls);
+    float off = 1.01f * CSG_FEATURE_HALF_DIAGONAL * cell * tape.lipschitz + slack;
+    float reach =
+        off + 1.01f * CSG_FEATURE_HALF_DIAGONAL * cell * fmaxf(tape.steepest, 1.0f) + slack;
+    bool is_formula = node->op == CSG_OP_FIELD;
+    find_values(probe, &tape, look->part->node_count == 1, cells);
+    look_at_leaf(probe, look, &tape, off, cells, looks);
     for (size_t i = 0; i < cells->count; i++) {
-        if (cells->may_crease[i] || !(fabsf(cells->f[i]) <= reach))
+        if (cells->looks[i] == CSG_LOOK_ALL || !(fabsf(cells->f[i]) <= reach) ||
+            (cells->is_lone[i] && !is_formula))
             continue;
-        ball at = {{cells->x[i], cells->y[i], cells->z[i]}, HALF_DIAGONAL * cell};
+        ball at = {{cells->x[i], cells->y[i], cells->z[i]}, CSG_FEATURE_HALF_DIAGONAL * cell};
         near_leaf leaf = {node, cells->f[i]};
-        cells->may_crease[i] =
-            add_near(&tape, cells, i, leaf, &at, slack) ||
-            (is_shape ? balls.may_crease[i]
-                      : leaf_may_crease(&tape, &alone, at, (csg_band){-off, off}, still));
+        if (add_near(&tape, cells, i, leaf, &at, slack))
+            cells->looks[i] = CSG_LOOK_ALL;
+        else if (looks[i] > cells->looks[i])
+            cells->looks[i] = looks[i];
     }
 }
 
-static bool mark_part(csg_feature_probe *probe, int octant, const csg_block_part *part, bool still,
-                      uint8_t *rows)
+static bool mark_part(csg_feature_probe *probe, int octant, const part_look *look,
+                      csg_possible_cells *possible)
 {
+    const csg_block_part *part = look->part;
     part_cells cells;
     bool any = false, all = !is_one_at_a_time(part);
     gather_cells(probe, octant, &cells);
     for (size_t i = cells.count; i % CSG_LANES; i++)
         cells.x[i] = cells.x[0], cells.y[i] = cells.y[0], cells.z[i] = cells.z[0];
+    if (!all && cells.count)
+        find_lone(probe, look, &cells);
     for (uint32_t i = 0; i < part->node_count && !all && cells.count; i++)
         if (csg_op_is_leaf(part->nodes[i].op))
-            count_leaf(probe, &part->nodes[i], still, part->node_count == 1, &cells);
-    for (size_t i = 0; i < cells.count; i++)
-        if (all || cells.may_crease[i]) {
-            rows[cells.cell[i] / CSG_BLOCK_EDGE] |= (uint8_t)(1u << cells.cell[i] % CSG_BLOCK_EDGE);
-            any = true;
-        }
+            count_leaf(probe, look, &part->nodes[i], &cells);
+    for (size_t i = 0; i < cells.count; i++) {
+        csg_cell_look what = all ? CSG_LOOK_ALL : cells.looks[i];
+        int row = cells.cell[i] / CSG_BLOCK_EDGE, column = cells.cell[i] % CSG_BLOCK_EDGE;
+        possible->any[row] |= (uint8_t)((what != CSG_LOOK_NOTHING) << column);
+        possible->tips[row] |= (uint8_t)((what == CSG_LOOK_TIPS) << column);
+        any = any || what != CSG_LOOK_NOTHING;
+    }
     return any;
 }
 
-static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts, unsigned still,
-                       uint8_t *rows)
+static bool mark_parts(csg_feature_probe *probe, const csg_block_part *parts,
+                       const csg_block_formulas *formulas, unsigned still,
+                       csg_possible_cells *possible)
 {
     bool any = false;
     for (int octant = 0; octant < CSG_OCTANTS; octant++) {
-        const csg_block_part *part = &parts[octant];
-        if (part->state == CSG_CELL_SURFACE)
-            any = mark_part(probe, octant, part, still >> octant & 1, rows) || any;
+        const part_look look = {&parts[octant], still >> octant & 1, formulas};
+        if (look.part->state == CSG_CELL_SURFACE)
+            any = mark_part(probe, octant, &look, possible) || any;
     }
     return any;
-}
-
-/* ---- formulas --------------------------------------------------------------------------------
- */
-
-/* Whether second derivatives, all over a cube, keep a formula's gradient from turning by much in a
- * cell, as seen from the shortest that it can be. half: of the cube's edge. */
-static bool is_still(const csg_tape *tape, const csg_tape_node *node, const float at[3],
-                     double half, double cell)
-{
-    csg_cone_ball g;
-    double bend, diagonal = 2 * (double)HALF_DIAGONAL;
-    double radius = node->frame == CSG_FRAME_OFFSET ? half : half * diagonal;
-    if (!csg_cone_find_bend(tape, node, at, radius, &g, &bend))
-        return false;
-    double shortest = csg_norm3(g.at) - g.spread - bend * half * diagonal;
-    return bend * cell * diagonal < CSG_FEATURE_MOST_TURN * shortest;
-}
-
-static bool are_still(const csg_feature_probe *probe, const float at[3], float half)
-{
-    const csg_block *block = probe->block;
-    for (uint32_t i = 0; i < block->node_count; i++)
-        if (block->nodes[i].op == CSG_OP_FIELD &&
-            !is_still(&probe->marching->field->tape, &block->nodes[i], at, (double)half,
-                      probe->marching->lattice->cell_size))
-            return false;
-    return true;
-}
-
-/* Whether the surface passes a part of a block. */
-static bool is_passed(const csg_block *block, int octant)
-{
-    enum { P = CSG_PART_EDGE };
-    unsigned columns = (1u << P) - 1;
-    for (int row = 0; row < P * P; row++) {
-        int j = (octant >> 1 & 1) * P + row % P, k = (octant >> 2 & 1) * P + row / P;
-        if (csg_cell_rows_of(block, j, k).mixed >> (octant & 1) * P & columns)
-            return true;
-    }
-    return false;
-}
-
-/* In which parts of the block no formula creases: the whole is asked first. */
-static unsigned find_still_parts(const csg_feature_probe *probe)
-{
-    float cell = (float)probe->marching->lattice->cell_size, middle[3];
-    for (int axis = 0; axis < 3; axis++)
-        middle[axis] = probe->line[axis][CSG_BLOCK_EDGE / 2];
-    if (are_still(probe, middle, 0.5f * CSG_BLOCK_EDGE * cell))
-        return (1u << CSG_OCTANTS) - 1;
-    unsigned still = 0;
-    for (int octant = 0; octant < CSG_OCTANTS; octant++)
-        if (is_passed(probe->block, octant) &&
-            are_still(probe, ball_of(probe, octant, cell).at, 0.5f * CSG_PART_EDGE * cell))
-            still |= 1u << octant;
-    return still;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
 /* A sharp operand that is in the block's tape but far away would have smooth thin parts looked at
  * that a shorter tape leaves alone; so whatever the octree has dropped, parts are asked. */
-bool csg_feature_find_possible(csg_feature_probe *probe,
-                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE])
+bool csg_feature_find_possible(csg_feature_probe *probe, csg_possible_cells *possible)
 {
     const csg_block *block = probe->block;
-    unsigned still = find_still_parts(probe);
-    memset(rows, 0, CSG_BLOCK_EDGE * CSG_BLOCK_EDGE);
+    const csg_block_part whole = {block->nodes, block->node_count, CSG_CELL_SURFACE};
+    const csg_block_formulas formulas = csg_feature_find_formulas(probe);
+    unsigned still = csg_feature_find_still_parts(probe, &formulas, !is_one_at_a_time(&whole));
+    memset(possible, 0, sizeof *possible);
     if (block->parts)
         return parts_may_crease(probe, block->parts, still) &&
-               mark_parts(probe, block->parts, still, rows);
+               mark_parts(probe, block->parts, &formulas, still, possible);
     csg_block_part parts[CSG_OCTANTS];
     for (int octant = 0; octant < CSG_OCTANTS; octant++)
-        parts[octant] = (csg_block_part){block->nodes, block->node_count, CSG_CELL_SURFACE};
+        parts[octant] = whole;
     if (!parts_may_crease(probe, parts, still))
         return false;
     csg_feature_around_begin(probe->around, probe->memory, probe->marching);
     csg_arena_mark mark = csg_arena_get_mark(&probe->around->arena);
     bool done = split(probe, parts); /* without memory the run ends */
-    bool possible =
-        !done || (parts_may_crease(probe, parts, still) && mark_parts(probe, parts, still, rows));
+    bool any = !done || (parts_may_crease(probe, parts, still) &&
+                         mark_parts(probe, parts, &formulas, still, possible));
     probe->around->out_of_memory |= !done;
     csg_arena_release_to(&probe->around->arena, mark);
-    return possible;
+    return any;
 }

@@ -6,10 +6,8 @@
 
 #include "mesh/features/probe.h"
 
-/* Which cells of the probe's block may: rows[8 z + y] has bit x. False: none, the gradient does not
- * jump anywhere on the surface in the block, and does not turn so fast that it would look like a
- * jump. */
-bool csg_feature_find_possible(csg_feature_probe *probe,
-                               uint8_t rows[CSG_BLOCK_EDGE * CSG_BLOCK_EDGE]);
+/* Which cells of the probe's block may. False: none, the gradient does not jump anywhere on the
+ * surface in the block, and does not turn so fast that it would look like a jump. */
+bool csg_feature_find_possible(csg_feature_probe *probe, csg_possible_cells *possible);
 
 #endif
