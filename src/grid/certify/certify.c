@@ -10,6 +10,7 @@
 
 #include "base/pool.h"
 #include "base/trace.h"
+#include "field/cones/near_slopes.h"
 #include "field/kernels/dispatch.h"
 #include "field/unit_slopes.h"
 #include "grid/certify/certify_block.h"
@@ -234,7 +235,12 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
     self->reach.noise = 4 * self->reach.lipschitz * (double)rounding;
     self->reach.band = 2 * self->reach.lipschitz * w->lattice->cell_size;
     self->reach.scratch = csg_memory_alloc(memory, self->reach.scratch_floats * sizeof(float));
-    return self->samples && self->reach.scratch;
+    bool is_divided = csg_tape_has_near_slopes(&w->field.tape);
+    size_t bytes = w->field.parameter_count * sizeof *self->near;
+    self->near = is_divided ? csg_memory_alloc(memory, bytes) : NULL;
+    if (self->near)
+        memcpy(self->near, w->field.tape.parameters, bytes);
+    return self->samples && self->reach.scratch && (self->near || !is_divided);
 }
 
 static bool create(walk *w)
@@ -264,6 +270,7 @@ static void release(walk *w)
         csg_arena_reset(&self->tapes);
         csg_memory_release(memory, self->samples, sizeof *self->samples);
         csg_memory_release(memory, self->reach.scratch, self->reach.scratch_floats * sizeof(float));
+        csg_memory_release(memory, self->near, w->field.parameter_count * sizeof *self->near);
         csg_memory_release(memory, self->stack, self->stack_capacity * sizeof *self->stack);
         csg_memory_release(memory, self->findings, self->finding_capacity * sizeof *self->findings);
     }

@@ -193,11 +193,12 @@ static bool climb_ridge(const csg_reach *reach, double p[3], double *value, int 
     return false;
 }
 
-static void add_to_trail(csg_reach_trail *trail, const double p[3], double value, int sign)
+static void add_to_trail(const csg_reach *reach, csg_reach_trail *trail, const double p[3],
+                         double value, int sign)
 {
     uint32_t place = trail->count++ % CSG_REACH_TRAIL;
     memcpy(trail->at[place], p, sizeof trail->at[place]);
-    trail->value[place] = value;
+    trail->value[place] = fmin(value, reach->band);
     trail->sign[place] = (int8_t)sign;
 }
 
@@ -245,7 +246,7 @@ bool csg_reach_slide(const csg_reach *reach, const double from[3], double value,
         values[i] = value;
         if (touches_trail(reach, p, value, sign, trail) || holds_sample(reach, p, value, sign)) {
             for (int k = 0; k <= i; k++)
-                add_to_trail(trail, way[k], values[k], sign);
+                add_to_trail(reach, trail, way[k], values[k], sign);
             return true;
         }
         if (!slide_on(reach, p, &value, sign, step))
@@ -369,7 +370,7 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
         return CSG_REACH_SAMPLE;
     if (found || (value >= 0 && has_way(reach, p, sign))) {
         for (uint32_t i = 0; trail && i < way.count; i++)
-            add_to_trail(trail, way.at[i], way.value[i], sign);
+            add_to_trail(reach, trail, way.at[i], way.value[i], sign);
         return CSG_REACH_SAMPLE;
     }
     double other = distance_to_other(reach, p, value / reach->lipschitz, sign);
