@@ -12,6 +12,7 @@
 #include "field/point.h"
 
 static const double ROOT3 = 1.7320508075688774;
+static const double ENOUGH = 0.97; /* of the corners of a box */
 
 /* The ball that reaches least far along w, and how far. */
 static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double *reach)
@@ -168,6 +169,17 @@ static bool find_leaves(const csg_tape *tape, const csg_cone_region *region,
     return leaves->balls.count > 0;
 }
 
+/* Leaves that are within the band somewhere. */
+static uint32_t count_present(const csg_cone_leaves *leaves)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < leaves->count; i++) {
+        uint32_t end = i + 1 < leaves->count ? leaves->first[i + 1] : leaves->balls.count;
+        count += end > leaves->first[i];
+    }
+    return count;
+}
+
 /* Of the gradients of all leaves. */
 static double largest_of(const csg_cone_leaves *leaves)
 {
@@ -241,7 +253,7 @@ static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3],
 }
 
 /* The axis for the balls' directions: of two solids one may be a formula that climbs far slower. */
-static bool find_axis_of_directions(const csg_cone_balls *balls, csg_cone *out)
+static bool find_axis_of_directions(const csg_cone_balls *balls, double share, csg_cone *out)
 {
     csg_cone_balls unit = {.count = balls->count};
     for (uint32_t i = 0; i < balls->count; i++) {
@@ -253,7 +265,7 @@ static bool find_axis_of_directions(const csg_cone_balls *balls, csg_cone *out)
             unit.items[i].at[k] = ball->at[k] / norm;
         unit.items[i].spread = ball->spread / norm;
     }
-    if (!find_axis(&unit, 0.97, out))
+    if (!find_axis(&unit, share, out))
         return false;
     worst_of(balls, out->axis, &out->least);
     return true;
@@ -287,6 +299,8 @@ bool csg_cone_find_in(csg_pruner *room, const csg_tape *tape, const csg_cone_reg
         of_leaves.band = INFINITY;
     if (!find_leaves(tape, &of_leaves, &leaves, out, &is_simple))
         return false;
+    if (by_leaves) /* where one of them is alone there is no edge between them */
+        out->is_crease = out->is_crease && count_present(&leaves) > 1;
     out->is_crease |= leaves.balls.has_edges;
     if (!is_simple) {
         bool found = find_along(room, tape, region->c, region->radius, &leaves, out);
@@ -295,7 +309,7 @@ bool csg_cone_find_in(csg_pruner *room, const csg_tape *tape, const csg_cone_reg
         return found;
     }
     out->most = most_shares(tape) * largest_of(&leaves);
-    if (!find_axis_of_directions(&leaves.balls, out))
+    if (!find_axis_of_directions(&leaves.balls, out->fills_cube ? ENOUGH : 1, out))
         return false;
     find_lean(&leaves.balls, out);
     return true;

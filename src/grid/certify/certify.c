@@ -212,6 +212,14 @@ static uint32_t block_budget(size_t cubes)
     return (uint32_t)(share < least ? least : share > most ? most : share);
 }
 
+static bool has_formulas(const csg_tape *tape)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < tape->count && !any; i++)
+        any = tape->nodes[i].op == CSG_OP_FIELD;
+    return any;
+}
+
 static bool create_worker(const walk *w, csg_certify_worker *self)
 {
     csg_memory *memory = &w->context->memory;
@@ -222,6 +230,7 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
                                  .size = w->options->size,
                                  .cancelled = w->options->cancelled,
                                  .user = w->options->user,
+                                 .has_formulas = has_formulas(&w->field.tape),
                                  .most_block_visits = block_budget(w->cube_count)};
     csg_pruner_init(&self->plain, memory, kernel, rounding);
     csg_pruner_init(&self->wide, memory, kernel, rounding);

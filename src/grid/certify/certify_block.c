@@ -25,7 +25,7 @@ static const double WIDE_FAR = 3, AROUND = 4;   /* around cubes of several cells
 static const double FAR = 2.5;                  /* cells */
 static const double NEAR = 1.45, WIDE_NEAR = 8; /* radii of the cube */
 static const double WIDER = 1.2;                /* than a smaller cone needs */
-static const double NEAR_BALL = 1.8, NEAR_CUBE = 1.1, FAR_CUBE = 2.1; /* cells */
+static const double HALF_FAR = 1.3, HALF_FAR_CUBE = 1.1, FAR_CUBE = 2.1; /* cells */
 static const double LOCAL = 1.3, OWN = 2.6;
 
 enum {
@@ -205,19 +205,22 @@ static bool climbs_far(const csg_certify_worker *w, const csg_cone *cone, const 
     return cone->least * up > 0.5 * ROOT3 * 1.01 * w->reach.lipschitz || s > needed * (1 + slack);
 }
 
-/* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough. */
+/* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough;
+ * that of formulas is as long as they ask for, since their bounds grow with it. */
 static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone)
 {
     double h = w->lattice->cell_size;
-    surroundings far = {NEAR_BALL, NEAR_CUBE}, wanted;
+    const surroundings most = {FAR, w->has_formulas ? FAR_CUBE : INFINITY};
+    surroundings far = {HALF_FAR, w->has_formulas ? HALF_FAR_CUBE : INFINITY}, wanted;
     for (int i = 0; i < 2; i++) {
         if (!cone_of(w, cube, ROOT3 * cube->half + far.ball * h, cube->half + far.cube * h, cone))
             return false;
         if (climbs_far(w, cone, &far, &wanted))
             return true;
-        if (wanted.cube > FAR_CUBE || (!cone->fills_cube && wanted.ball > FAR))
+        bool fits = wanted.cube <= most.cube && (cone->fills_cube || wanted.ball <= most.ball);
+        if (cone->fills_cube && !fits)
             return false;
-        far = (surroundings){fmax(wanted.ball, far.ball), fmax(wanted.cube, far.cube)};
+        far = fits && w->has_formulas ? wanted : most;
     }
     return false;
 }
@@ -235,6 +238,16 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
         layer -= sqrt(radius * radius - r * r);
     }
     return layer <= w->size;
+}
+
+/* Of what has a cone around it; what counts of edges are those in the cube itself. */
+static csg_cell_kind kind_of(csg_certify_worker *w, const csg_certify_cube *cube,
+                             const csg_cone *around)
+{
+    csg_cone cone;
+    bool is_crease = around->is_crease &&
+                     (!cone_of(w, cube, ROOT3 * cube->half, cube->half, &cone) || cone.is_crease);
+    return is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED;
 }
 
 /* Two places up and down a cone, `height` radii of the cube from its centre. */
@@ -297,7 +310,7 @@ static bool find_meeting(csg_certify_worker *w, const csg_certify_cube *cube, me
         return true;
     m->height = WIDER * needed;
     double radius = meeting_radius(m->height) * r, h = w->lattice->cell_size;
-    if (is_cell(w, cube))
+    if (w->has_formulas && is_cell(w, cube))
         return radius < OWN * h && cone_of(w, cube, radius, INFINITY, &m->cone) &&
                is_met(w, cube, m, &needed);
     return m->height <= WIDE_NEAR && radius < LOCAL * h &&
@@ -310,7 +323,7 @@ static bool follow_meeting(csg_certify_worker *w, const csg_certify_cube *cube, 
 {
     const int signs[2] = {m->values[0] > 0 ? 1 : 0, m->values[1] < 0 ? -1 : 0};
     return follow_ends(w, cube, (const double(*)[3])m->p, m->values, signs,
-                       m->cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+                       kind_of(w, cube, &m->cone));
 }
 
 /* Two balls up and down the gradient. */
@@ -484,7 +497,7 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
     if (!is_whole && !is_within_budget(w, cube))
         return give_up(w, cube);
     if (is_whole && has_far_cone(w, cube, &cone)) {
-        note_crossed(w, cube, cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+        note_crossed(w, cube, kind_of(w, cube, &cone));
         return true;
     }
     if (!settle(w, cube, &settled))

@@ -37,6 +37,7 @@ typedef struct csg_certify_worker {
     const csg_lattice *lattice;
     double size;                /* where dividing ends */
     uint32_t most_block_visits; /* of cubes, a block */
+    bool has_formulas;
     csg_pruner plain, wide, cones;
     csg_arena tapes;
     csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
