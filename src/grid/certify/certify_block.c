@@ -163,12 +163,12 @@ static double band_of(const csg_certify_worker *w)
 
 /* In the ball around a point and in the cube of that half edge, within the band. */
 static bool cone_around(csg_certify_worker *w, const csg_tape *tape, const csg_certify_cube *cube,
-                        double radius, double half, csg_cone *cone)
+                        double radius, double half, double band, csg_cone *cone)
 {
     const csg_cone_region region = {.c = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]},
                                     .radius = radius * (1 + 0x1p-20) + (double)w->wide.rounding,
                                     .half = half * (1 + 0x1p-20) + (double)w->wide.rounding,
-                                    .band = band_of(w)};
+                                    .band = band};
     bool found = csg_cone_find_in(&w->cones, tape, &region, cone);
     w->out_of_memory |= cone->out_of_memory;
     return found;
@@ -178,7 +178,7 @@ static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double 
                     csg_cone *cone)
 {
     csg_tape tape = tape_of(w, cube);
-    return cone_around(w, &tape, cube, radius, half, cone);
+    return cone_around(w, &tape, cube, radius, half, band_of(w), cone);
 }
 
 /* A region that a cone is asked for around a cube: its ball and its cube, in cells beyond the
@@ -206,15 +206,20 @@ static bool climbs_far(const csg_certify_worker *w, const csg_cone *cone, const 
 }
 
 /* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough;
- * that of formulas is as long as they ask for, since their bounds grow with it. */
-static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone)
+ * that of formulas is as long as they ask for, since their bounds grow with it. *nearer: a smaller
+ * region may have a cone; that of formulas alone is hardly larger than a near cone's. */
+static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone,
+                         bool *nearer)
 {
     double h = w->lattice->cell_size;
     const surroundings most = {FAR, w->has_formulas ? FAR_CUBE : INFINITY};
     surroundings far = {HALF_FAR, w->has_formulas ? HALF_FAR_CUBE : INFINITY}, wanted;
     for (int i = 0; i < 2; i++) {
-        if (!cone_of(w, cube, ROOT3 * cube->half + far.ball * h, cube->half + far.cube * h, cone))
+        if (!cone_of(w, cube, ROOT3 * cube->half + far.ball * h, cube->half + far.cube * h, cone)) {
+            *nearer = i > 0 || !cone->fills_cube;
             return false;
+        }
+        *nearer = true;
         if (climbs_far(w, cone, &far, &wanted))
             return true;
         bool fits = wanted.cube <= most.cube && (cone->fills_cube || wanted.ball <= most.ball);
@@ -240,14 +245,30 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
     return layer <= w->size;
 }
 
-/* Of what has a cone around it; what counts of edges are those in the cube itself. */
+/* Whether the surface itself may have an edge in the cube: operands and faces that only take part
+ * around it do not count. */
+static bool has_edge(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
+    double r = ROOT3 * cube->half, thin = w->reach.noise;
+    csg_tape tape = tape_of(w, cube), own;
+    csg_cone cone;
+    csg_arena_mark mark = csg_arena_get_mark(&w->tapes);
+    bool done = csg_prune_cube(&w->plain, &tape, c, (float)(r * (1 + 0x1p-20)));
+    bool is_here = done && csg_prune_state(&w->plain, 0) == CSG_CELL_SURFACE;
+    if (is_here)
+        done = csg_prune_shorten(&w->plain, 0, (float)thin, &w->tapes, &own);
+    w->out_of_memory |= !done;
+    bool has_one = is_here && done &&
+                   (!cone_around(w, &own, cube, r, cube->half, thin, &cone) || cone.is_crease);
+    csg_arena_release_to(&w->tapes, mark);
+    return has_one;
+}
+
 static csg_cell_kind kind_of(csg_certify_worker *w, const csg_certify_cube *cube,
                              const csg_cone *around)
 {
-    csg_cone cone;
-    bool is_crease = around->is_crease &&
-                     (!cone_of(w, cube, ROOT3 * cube->half, cube->half, &cone) || cone.is_crease);
-    return is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED;
+    return around->is_crease && has_edge(w, cube) ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED;
 }
 
 /* Two places up and down a cone, `height` radii of the cube from its centre. */
@@ -294,7 +315,7 @@ static bool has_wide_cone(csg_certify_worker *w, const csg_certify_cube *cube, d
     if (is_here)
         done = csg_prune_shorten(&w->wide, 0, (float)w->local.band, &w->tapes, &tape);
     w->out_of_memory |= !done;
-    bool found = done && is_here && cone_around(w, &tape, cube, radius, INFINITY, cone);
+    bool found = done && is_here && cone_around(w, &tape, cube, radius, INFINITY, band_of(w), cone);
     csg_arena_release_to(&w->tapes, mark);
     return found;
 }
@@ -351,10 +372,11 @@ static bool settle_by_balls(csg_certify_worker *w, const csg_certify_cube *cube,
 }
 
 /* Near cone or balls; *settled tells whether the cube needs no division. */
-static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
+static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool may_meet,
+                   bool *settled)
 {
     meeting m;
-    *settled = find_meeting(w, cube, &m);
+    *settled = may_meet && find_meeting(w, cube, &m);
     return *settled ? follow_meeting(w, cube, &m) : settle_by_balls(w, cube, settled);
 }
 
@@ -488,7 +510,7 @@ static void use_own_tape(csg_certify_worker *w, const csg_certify_cube *cube)
 static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, bool *divide)
 {
     csg_cone cone;
-    bool settled = false, is_whole = is_cell(w, cube);
+    bool settled = false, may_meet = true, is_whole = is_cell(w, cube);
     *divide = false;
     if (is_whole)
         use_own_tape(w, cube);
@@ -496,11 +518,11 @@ static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, b
         return true;
     if (!is_whole && !is_within_budget(w, cube))
         return give_up(w, cube);
-    if (is_whole && has_far_cone(w, cube, &cone)) {
+    if (is_whole && has_far_cone(w, cube, &cone, &may_meet)) {
         note_crossed(w, cube, kind_of(w, cube, &cone));
         return true;
     }
-    if (!settle(w, cube, &settled))
+    if (!settle(w, cube, may_meet, &settled))
         return false;
     if (settled)
         return true;
@@ -601,11 +623,11 @@ static bool look_at(csg_certify_worker *w, const csg_certify_cube *cube)
     csg_cone cone;
     if (w->near && cube->half > 1.5 * w->lattice->cell_size)
         use_near_slopes(w, cube);
-    bool goes_on = true;
+    bool goes_on = true, nearer;
     if (cube->cell < CSG_CELLS_PER_BLOCK) {
         if (!look_at_small(w, cube, &goes_on))
             return false;
-    } else if (has_far_cone(w, cube, &cone) && !cone.is_crease) {
+    } else if (has_far_cone(w, cube, &cone, &nearer) && !cone.is_crease) {
         note_crossed(w, cube, CSG_CELL_CERTIFIED);
         goes_on = false;
     }
