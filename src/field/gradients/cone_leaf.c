@@ -193,7 +193,7 @@ static void place_affine(csg_cone_leaf *l, const float *frame, const double c[3]
         }
         own_half[i] = half;
     }
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3 && l->half[i] < INFINITY; i++)
         l->half[i] = own_half[i];
     l->rho *= norm;
     l->norm = fabs(sigma) * norm;

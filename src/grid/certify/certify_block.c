@@ -2,9 +2,9 @@
  * Dividing a block until every cube of it is settled. In the order tried:
  *
  *   empty      the field's interval over the cube does not hold 0
- *   far cone   one direction climbs at m all over the cube and HALF_FAR or FAR cells around: what
- *              hides in the cube is then the tip of a cone that holds a lattice point. Cubes down
- *              to a cell.
+ *   far cone   one direction climbs all over the cube and HALF_FAR to FAR cells around, where |f| is
+ *              small: what hides in the cube is then the tip of a cone that holds a lattice point.
+ *              Cubes down to a cell.
  *   near cone  the same around a cube within a cell, so that all that hides in it is connected with
  *              one of two places up and down that direction: one way from each of them to the
  *              lattice (certify_reach.h) answers for the cube
@@ -21,12 +21,19 @@
 #include "scene/warp_kinds.h"
 
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
-static const double WIDE_FAR = 3, AROUND = 4;   /* around cubes of several cells */
-static const double FAR = 2.5;                  /* cells */
+/* In cells: how far around a cube its tape is valid, and around one of several cells. A cone within
+ * FAR_CUBE of these, and the balls of the band that end in it, are then where that one's tape is.
+ */
+static const double FAR = 2.5, WIDE_FAR = 3;
+/* Where slopes of formulas are those near a cube of several cells: what is looked at around a cell
+ * of it goes 2.5 cells from its centre and has balls of a cell, or 1.3 beyond it and balls of two.
+ */
+static const double AROUND = 4;
+/* How far a cone is asked for first, and at most where formulas are in it, which heed cubes. */
+static const double HALF_FAR = 1.3, HALF_FAR_CUBE = 1.1, FAR_CUBE = 2.1;
+static const double LOCAL = 1.3, OWN = 2.6;     /* near cones, within a cell and of all of it */
 static const double NEAR = 1.45, WIDE_NEAR = 8; /* radii of the cube */
 static const double WIDER = 1.2;                /* than a smaller cone needs */
-static const double HALF_FAR = 1.3, HALF_FAR_CUBE = 1.1, FAR_CUBE = 2.1; /* cells */
-static const double LOCAL = 1.3, OWN = 2.6;
 
 enum {
     MOST_VISITS = 20000,  /* of cubes, a cell */
