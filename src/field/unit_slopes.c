@@ -31,16 +31,29 @@ static bool is_by_signs(const csg_tape *tape, const csg_tape_node *node)
            csg_blend_is_sharp(node->blend);
 }
 
-/* Values of a leaf by its constant: they are rounded once more, which leaves their signs. */
+bool csg_tape_is_by_signs(const csg_tape *tape)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < tape->count && all; i++)
+        all = is_by_signs(tape, &tape->nodes[i]);
+    return all;
+}
+
+void csg_leaf_divide(const csg_tape *tape, const csg_tape_node *leaf, float by, float *parameters)
+{
+    const float *from = tape->parameters + leaf->parameters;
+    float *own = parameters + leaf->parameters;
+    own[CSG_LEAF_SIGMA] = from[CSG_LEAF_SIGMA] / by;
+    own[CSG_LEAF_SLACK] = from[CSG_LEAF_SLACK] / by * UP;
+    own[CSG_LEAF_OFF] = from[CSG_LEAF_OFF] / by * UP;
+    own[CSG_LEAF_TURNED] = from[CSG_LEAF_TURNED] / by * UP;
+}
+
 static void divide(const csg_tape *tape, const csg_tape_node *leaf, float *parameters,
                    csg_tape_formula *formulas)
 {
     csg_tape_formula *formula = &formulas[number_of(tape, leaf)];
-    float *own = parameters + leaf->parameters;
-    own[CSG_LEAF_SIGMA] /= formula->lipschitz;
-    own[CSG_LEAF_SLACK] = own[CSG_LEAF_SLACK] / formula->lipschitz * UP;
-    own[CSG_LEAF_OFF] = own[CSG_LEAF_OFF] / formula->lipschitz * UP;
-    own[CSG_LEAF_TURNED] = own[CSG_LEAF_TURNED] / formula->lipschitz * UP;
+    csg_leaf_divide(tape, leaf, formula->lipschitz, parameters);
     formula->lipschitz = UP;
 }
 
@@ -48,16 +61,14 @@ bool csg_field_with_unit_slopes(const csgm_field *field, csg_arena *arena, csgm_
 {
     const csg_tape *tape = &field->tape;
     uint32_t steep = 0, formula_count = 0;
-    bool by_signs = true;
     *out = *field;
     for (uint32_t i = 0; i < tape->count; i++) {
         const csg_tape_node *node = &tape->nodes[i];
-        by_signs = by_signs && is_by_signs(tape, node);
         steep += is_steep(tape, node);
         if (node->op == CSG_OP_FIELD && number_of(tape, node) >= formula_count)
             formula_count = number_of(tape, node) + 1;
     }
-    if (!steep || !by_signs)
+    if (!steep || !csg_tape_is_by_signs(tape))
         return true;
     float *parameters = csg_arena_alloc(arena, field->parameter_count * sizeof *parameters);
     csg_tape_formula *formulas = csg_arena_alloc(arena, formula_count * sizeof *formulas);

@@ -15,4 +15,11 @@
  * signs (blends, rules, offsets of formulas). False: out of memory. */
 bool csg_field_with_unit_slopes(const csgm_field *field, csg_arena *arena, csgm_field *out);
 
+/* Whether nothing looks at more than the signs of leaves that may be divided. */
+bool csg_tape_is_by_signs(const csg_tape *tape);
+
+/* A leaf's values divided by a number above 0, in a copy of the tape's parameters: they are rounded
+ * once more, which leaves their signs. */
+void csg_leaf_divide(const csg_tape *tape, const csg_tape_node *leaf, float by, float *parameters);
+
 #endif

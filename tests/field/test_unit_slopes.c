@@ -4,7 +4,9 @@
  * is looked at.
  */
 #include <math.h>
+#include <string.h>
 
+#include "field/cones/near_slopes.h"
 #include "field/field_support.h"
 #include "field/unit_slopes.h"
 #include "scene/formula/formula.h"
@@ -122,6 +124,59 @@ static void check_bounds(const made *m, csg_random *random)
     }
 }
 
+/* Near a place formulas are divided by what they climb there: the same signs, no steeper than 1. */
+static size_t check_near(const made *m, csg_random *random)
+{
+    enum { POINTS = 40 };
+    static float scratch[1 << 16], parameters[1 << 12];
+    const csg_kernel *kernels[8];
+    const csg_tape *whole = &m->evened.tape;
+    csg_tape near = *whole;
+    float half = (float)csg_random_uniform(random, 1e-2, 0.5), c[3], at[3][POINTS];
+    float was[POINTS], is[POINTS];
+    size_t larger = 0, bytes = m->evened.parameter_count * sizeof *parameters;
+    test_kernels(kernels);
+    if (!csg_tape_has_near_slopes(whole))
+        return 0;
+    assert_true(bytes <= sizeof parameters);
+    memcpy(parameters, whole->parameters, bytes);
+    near.parameters = parameters;
+    for (int axis = 0; axis < 3; axis++) {
+        c[axis] = (float)csg_random_uniform(random, -1, 1);
+        for (int i = 0; i < POINTS; i++)
+            at[axis][i] = c[axis] + half * (float)csg_random_uniform(random, -1, 1);
+    }
+    csg_tape_set_near_slopes(whole, c, (double)half, parameters);
+    kernels[0]->values(whole, at[0], at[1], at[2], POINTS, was, scratch, 1 << 16);
+    kernels[0]->values(&near, at[0], at[1], at[2], POINTS, is, scratch, 1 << 16);
+    for (int i = 0; i < POINTS; i++) {
+        double x = (double)(at[0][i] - at[0][0]), y = (double)(at[1][i] - at[1][0]),
+               z = (double)(at[2][i] - at[2][0]);
+        assert_int_equal(sign_of(was[i]), sign_of(is[i]));
+        assert_true(fabs((double)(is[i] - is[0])) <=
+                    sqrt(x * x + y * y + z * z) * (1 + 1e-4) + 1e-4);
+        larger += fabsf(is[i]) > 1.2f * fabsf(was[i]);
+    }
+    return larger;
+}
+
+static void near_slopes_hold(void **state)
+{
+    size_t larger = 0;
+    for (unsigned turn = 0; turn < 120; turn++) {
+        csg_random random = {.state = 4500 + turn};
+        made m;
+        make(&m, &random, turn, SHARP);
+        for (int i = 0; i < 20; i++)
+            larger += check_near(&m, &random);
+        end(&m);
+        make(&m, &random, turn, (csg_blend){CSG_BLEND_ROUND, 0.2, false});
+        assert_false(csg_tape_has_near_slopes(&m.evened.tape));
+        end(&m);
+    }
+    assert_true(larger > 5000);
+}
+
 static void signs_and_bounds_hold(void **state)
 {
     size_t changed = 0, compared = 0;
@@ -157,6 +212,7 @@ static void blends_are_left_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(near_slopes_hold),
         cmocka_unit_test(signs_and_bounds_hold),
         cmocka_unit_test(blends_are_left_alone),
     };

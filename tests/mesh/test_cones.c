@@ -47,6 +47,46 @@ static bool try_cone(const csgm_scene *scene, const csgm_field *field, csg_rando
     return true;
 }
 
+static uint32_t band_count = 0;
+
+/* The same of a region: in its ball and its cube, where |f| is within its band. */
+static bool try_region(const csgm_scene *scene, const csgm_field *field, csg_random *random,
+                       csg_vec3 at, double half)
+{
+    csg_cone cone;
+    const csg_cone_region region = {{(float)(at.x - field->center.x),
+                                     (float)(at.y - field->center.y),
+                                     (float)(at.z - field->center.z)},
+                                    half * csg_random_uniform(random, 1, 1.8),
+                                    half,
+                                    half * csg_random_uniform(random, 0.1, 0.8)};
+    csg_pruner room;
+    csg_pruner_init(&room, &field->context->memory, csg_kernel_for(CSGM_ISA_AUTO), 0);
+    bool found = csg_cone_find_in(&room, &field->tape, &region, &cone);
+    csg_pruner_release(&room);
+    for (int i = 0; i < TRIES && found; i++) {
+        csg_vec3 d = csg_vec3_scale(csg_vec3_make(csg_random_uniform(random, -1, 1),
+                                                  csg_random_uniform(random, -1, 1),
+                                                  csg_random_uniform(random, -1, 1)),
+                                    0.999 * half);
+        csg_sample f = test_sample(scene, csg_vec3_add(at, d));
+        if ((csg_vec3_norm(d) > region.radius && !cone.fills_cube) || fabs(f.value) > region.band)
+            continue;
+        csg_vec3 g = f.gradient;
+        double climb = g.x * cone.axis[0] + g.y * cone.axis[1] + g.z * cone.axis[2];
+        double sum = fabs(g.x) + fabs(g.y) + fabs(g.z);
+        if (csg_vec3_norm(g) < 1e-9)
+            continue;
+        if (climb < cone.least - 1e-3 || csg_vec3_norm(g) > cone.most + 1e-3 ||
+            csg_vec3_norm(g) > cone.steep * (climb + 1e-3) || sum > cone.lean * (climb + 1e-3))
+            fail_msg("(%g, %g, %g) climbs by %g near (%g, %g, %g) within %g: %g, %g, %g, %g", g.x,
+                     g.y, g.z, climb, at.x, at.y, at.z, half, cone.least, cone.most, cone.steep,
+                     cone.lean);
+        band_count++;
+    }
+    return found;
+}
+
 /* Where a random place of a region of mesh/distance/slopes.h, made smaller by `share`, lies from c.
  */
 static csg_vec3 place_in(const csg_gradients_region *r, csg_random *random, double share)
@@ -370,6 +410,7 @@ static void try_kind(const char *name, make_node *make, uint64_t seed, uint32_t 
             double radius = exp(csg_random_uniform(&random, -6, -0.5));
             found += try_cone(c.scene, c.field, &random, at, radius);
             csg_random other = random; /* what cones are tried at depends on nothing else */
+            try_region(c.scene, c.field, &other, come_near(c.scene, at), 0.3 * radius);
             range_count += try_range(c.scene, c.field, &other, at, radius);
         }
         mesh_case_end(&c);

@@ -11,6 +11,9 @@
 #include "field/gradients/cone_fillet.h"
 #include "field/point.h"
 
+static const double ROOT3 = 1.7320508075688774;
+static const double ENOUGH = 0.97; /* of the corners of a box */
+
 /* The ball that reaches least far along w, and how far. */
 static uint32_t worst_of(const csg_cone_balls *balls, const double w[3], double *reach)
 {
@@ -43,7 +46,8 @@ static bool step_towards(double w[3], const csg_cone_ball *ball)
     return share > 1e-6;
 }
 
-bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
+/* w is never shorter than what the best axis reaches: `share` of that is enough. */
+static bool find_axis(const csg_cone_balls *balls, double share, csg_cone *out)
 {
     enum { STEPS = 12 };
     double w[3] = {0, 0, 0}, best = 0;
@@ -60,11 +64,16 @@ bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
             for (int k = 0; k < 3; k++)
                 out->axis[k] = w[k] / norm;
         }
-        if (balls->count == 1 || !step_towards(w, &balls->items[worst]))
+        if (balls->count == 1 || best > share * norm || !step_towards(w, &balls->items[worst]))
             break;
     }
     out->least = best;
     return best > 0;
+}
+
+bool csg_cone_find_axis(const csg_cone_balls *balls, csg_cone *out)
+{
+    return find_axis(balls, 1, out);
 }
 
 /* Operators whose gradient is such a combination. */
@@ -111,8 +120,32 @@ static bool widen_operands(const csg_tape *tape, uint32_t n, const float c[3], d
     return true;
 }
 
+/* Whether the field is everywhere, with its gradient, that of one of the leaves. */
+static bool is_of_leaves(const csg_tape *tape)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < tape->count && all; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        all = csg_op_is_leaf(node->op) ||
+              ((node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION) &&
+               csg_blend_is_sharp(node->blend));
+    }
+    return all;
+}
+
+/* Whether all leaves heed a region's cube. */
+static bool is_of_formulas(const csg_tape *tape)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < tape->count && all; i++) {
+        const csg_tape_node *node = &tape->nodes[i];
+        all = !csg_op_is_leaf(node->op) || (node->op == CSG_OP_FIELD && !node->warp);
+    }
+    return all;
+}
+
 /* Of each leaf; false: one has no bound. */
-static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
+static bool find_leaves(const csg_tape *tape, const csg_cone_region *region,
                         csg_cone_leaves *leaves, csg_cone *out, bool *is_simple)
 {
     for (uint32_t i = 0; i < tape->count; i++) {
@@ -121,11 +154,11 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
             if (leaves->count >= CSG_CONE_MOST)
                 return false;
             leaves->first[leaves->count] = leaves->balls.count;
-            if (!csg_cone_add_leaf(&leaves->balls, tape, node, c, radius))
+            if (!csg_cone_add_leaf_in(&leaves->balls, tape, node, region))
                 return false;
             leaves->corner[leaves->count++] = leaves->balls.corner;
         } else if (csg_op_is_fillet(node->op)) {
-            if (!widen_operands(tape, i, c, radius, leaves))
+            if (!widen_operands(tape, i, region->c, region->radius, leaves))
                 return false;
             out->is_crease |= node->planes > 0 || csg_fillet_has_apart(tape, node);
         } else {
@@ -134,6 +167,17 @@ static bool find_leaves(const csg_tape *tape, const float c[3], double radius,
         }
     }
     return leaves->balls.count > 0;
+}
+
+/* Leaves that are within the band somewhere. */
+static uint32_t count_present(const csg_cone_leaves *leaves)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < leaves->count; i++) {
+        uint32_t end = i + 1 < leaves->count ? leaves->first[i + 1] : leaves->balls.count;
+        count += end > leaves->first[i];
+    }
+    return count;
 }
 
 /* Of the gradients of all leaves. */
@@ -208,15 +252,79 @@ static bool find_along(csg_pruner *room, const csg_tape *tape, const float c[3],
     return out->least > 0;
 }
 
+/* The axis for the balls' directions: of two solids one may be a formula that climbs far slower. */
+static bool find_axis_of_directions(const csg_cone_balls *balls, double share, csg_cone *out)
+{
+    csg_cone_balls unit = {.count = balls->count};
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        double norm = csg_norm3(ball->at);
+        if (!(norm > ball->spread && norm > 1e-6))
+            return false;
+        for (int k = 0; k < 3; k++)
+            unit.items[i].at[k] = ball->at[k] / norm;
+        unit.items[i].spread = ball->spread / norm;
+    }
+    if (!find_axis(&unit, share, out))
+        return false;
+    worst_of(balls, out->axis, &out->least);
+    return true;
+}
+
+/* How the gradients lean away from the axis. Vectors in a ball are no worse than all of its worst
+ * at once; what they combine to, with weights >= 0, is no worse than they are. */
+static void find_lean(const csg_cone_balls *balls, csg_cone *cone)
+{
+    cone->steep = cone->lean = 0;
+    for (uint32_t i = 0; i < balls->count; i++) {
+        const csg_cone_ball *ball = &balls->items[i];
+        double sum = fabs(ball->at[0]) + fabs(ball->at[1]) + fabs(ball->at[2]);
+        double climb = csg_dot3(cone->axis, ball->at) - ball->spread;
+        cone->steep = fmax(cone->steep, (csg_norm3(ball->at) + ball->spread) / climb);
+        cone->lean = fmax(cone->lean, (sum + ROOT3 * ball->spread) / climb);
+    }
+}
+
+bool csg_cone_find_in(csg_pruner *room, const csg_tape *tape, const csg_cone_region *region,
+                      csg_cone *out)
+{
+    csg_cone_leaves leaves;
+    csg_cone_region of_leaves = *region;
+    bool is_simple = true, by_leaves = is_of_leaves(tape);
+    leaves.count = leaves.balls.count = 0;
+    leaves.balls.has_edges = out->is_crease = out->out_of_memory = false;
+    out->most = INFINITY;
+    out->fills_cube = by_leaves && region->half < INFINITY && is_of_formulas(tape);
+    if (!by_leaves)
+        of_leaves.band = INFINITY;
+    if (!find_leaves(tape, &of_leaves, &leaves, out, &is_simple))
+        return false;
+    if (by_leaves) /* where one of them is alone there is no edge between them */
+        out->is_crease = out->is_crease && count_present(&leaves) > 1;
+    out->is_crease |= leaves.balls.has_edges;
+    if (!is_simple) {
+        bool found = find_along(room, tape, region->c, region->radius, &leaves, out);
+        out->steep = found ? out->most / out->least : INFINITY;
+        out->lean = ROOT3 * out->steep;
+        return found;
+    }
+    out->most = most_shares(tape) * largest_of(&leaves);
+    if (!find_axis_of_directions(&leaves.balls, out->fills_cube ? ENOUGH : 1, out))
+        return false;
+    find_lean(&leaves.balls, out);
+    return true;
+}
+
 bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
                    csg_cone *out)
 {
+    const csg_cone_region ball = {{c[0], c[1], c[2]}, radius, INFINITY, INFINITY};
     csg_cone_leaves leaves;
     bool is_simple = true;
     leaves.count = leaves.balls.count = 0;
     leaves.balls.has_edges = out->is_crease = out->out_of_memory = false;
     out->most = INFINITY;
-    if (!find_leaves(tape, c, radius, &leaves, out, &is_simple))
+    if (!find_leaves(tape, &ball, &leaves, out, &is_simple))
         return false;
     out->is_crease |= leaves.balls.has_edges;
     if (!is_simple)

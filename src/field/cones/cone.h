@@ -18,6 +18,9 @@ typedef struct csg_cone {
     double axis[3];     /* v, unit length */
     double least;       /* m > 0 */
     double most;        /* |grad f| is no larger; INFINITY where there is no cone */
+    double steep;       /* |grad f| is no more than this times v . grad f */
+    double lean;        /* |df/dx| + |df/dy| + |df/dz| is no more than this times v . grad f */
+    bool fills_cube;    /* it holds in all of a region's cube, within its ball or not */
     bool is_crease;     /* a sharp operator or an edge of a primitive is there */
     bool out_of_memory; /* so none was found */
 } csg_cone;
@@ -26,6 +29,11 @@ typedef struct csg_cone {
  * shown. room: for the intervals that some operators need; NULL: these have no bound then. */
 bool csg_cone_find(csg_pruner *room, const csg_tape *tape, const float c[3], double radius,
                    csg_cone *out);
+
+/* The same in a region, with the axis that suits directions, however long the gradients are. Its
+ * band counts where all operators are sharp: only of the field within it is then spoken. */
+bool csg_cone_find_in(csg_pruner *room, const csg_tape *tape, const csg_cone_region *region,
+                      csg_cone *out);
 
 /* ---- cone.c -----------------------------------------------------------------------------------
  */

@@ -226,7 +226,8 @@ static bool shares_of(const csg_tape *tape, const csg_tape_node *node, const csg
 {
     const csg_cone_box units[3] = {
         {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}}};
-    return csg_cone_formula(tape, csg_tape_formula_of(tape, node), at, units, shares, has_edges);
+    return csg_cone_formula(tape, csg_tape_formula_of(tape, node), at, units, NULL, shares,
+                            has_edges);
 }
 
 /* The chain rule twice, from the operands' derivatives on and from the result's by them: each loses
@@ -252,7 +253,7 @@ static bool combine(const csg_tape *tape, const csg_tape_node *node, const float
                            (double)seeds[k].high[1], 0, 0};
         all = sum(all, scale_range(one, (double)shares.low[k], (double)shares.high[k]));
     }
-    if (!csg_cone_formula(tape, formula, &at, seeds, &out, has_edges))
+    if (!csg_cone_formula(tape, formula, &at, seeds, NULL, &out, has_edges))
         return false;
     s->top -= node->arity;
     double most = largest_of(fabs((double)out.low[1]), fabs((double)out.high[1]));

@@ -19,10 +19,10 @@ typedef struct dual {
 } dual;
 
 /* The operand that counts, or either. */
-static dual extreme(uint8_t op, const dual *a, const dual *b, bool *has_edges)
+static dual extreme(uint8_t op, const dual *a, const dual *b, range value, bool *has_edges)
 {
     bool is_least = op == CSG_FORMULA_MIN;
-    dual out = {.value = value_of(op, a->value, b->value)};
+    dual out = {.value = value};
     if (is_least ? a->value.high < b->value.low : a->value.low > b->value.high)
         return *a;
     if (is_least ? b->value.high < a->value.low : b->value.low > a->value.high)
@@ -33,15 +33,25 @@ static dual extreme(uint8_t op, const dual *a, const dual *b, bool *has_edges)
     return out;
 }
 
-static dual run_step(const csg_tape_step *step, const dual *a, const dual *b, bool *has_edges)
+static bool is_square(const csg_tape_step *step, const dual *a, const dual *b)
+{
+    return step->op == CSG_FORMULA_MUL && a == b;
+}
+
+static range value_at(const csg_tape_step *step, const dual *a, const dual *b)
+{
+    return is_square(step, a, b) ? range_square(a->value, a->value)
+                                 : value_of(step->op, a->value, b->value);
+}
+
+static dual run_step(const csg_tape_step *step, const dual *a, const dual *b, range value,
+                     bool *has_edges)
 {
     range by_a, by_b = NOTHING;
     if (step->op == CSG_FORMULA_MIN || step->op == CSG_FORMULA_MAX)
-        return extreme(step->op, a, b, has_edges);
-    bool is_square = step->op == CSG_FORMULA_MUL && a == b;
-    dual out = {.value = is_square ? range_square(a->value, a->value)
-                                   : value_of(step->op, a->value, b->value)};
-    if (is_square)
+        return extreme(step->op, a, b, value, has_edges);
+    dual out = {.value = value};
+    if (is_square(step, a, b))
         by_a = scaled(a->value, 2);
     else if (csg_formula_op_is_unary(step->op))
         by_a = slope_of(step->op, a->value, out.value);
@@ -54,7 +64,8 @@ static dual run_step(const csg_tape_step *step, const dual *a, const dual *b, bo
 }
 
 bool csg_cone_formula(const csg_tape *tape, const csg_tape_formula *formula, const csg_cone_box *at,
-                      const csg_cone_box seeds[3], csg_cone_box *gradient, bool *has_edges)
+                      const csg_cone_box seeds[3], const struct range *values,
+                      csg_cone_box *gradient, bool *has_edges)
 {
     dual slots[CSG_FORMULA_SLOTS], constant = {.value = NOTHING};
     for (int i = 0; i < 3; i++) {
@@ -70,7 +81,8 @@ bool csg_cone_formula(const csg_tape *tape, const csg_tape_formula *formula, con
             a = &constant;
         else if (step->constant == CSG_CONSTANT_B)
             b = &constant;
-        slots[step->out] = run_step(step, a, b, has_edges);
+        range value = values ? values[s] : value_at(step, a, b);
+        slots[step->out] = run_step(step, a, b, value, has_edges);
     }
     const dual *result = &slots[formula->result];
     bool known = is_known(result->value) != 0;

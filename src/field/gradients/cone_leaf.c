@@ -9,6 +9,7 @@
 #include "field/gradients/cone_formula.h"
 #include "field/gradients/cone_leaf.h"
 #include "field/gradients/cone_warp.h"
+#include "field/gradients/narrow_formula.h"
 #include "scene/primitives/curve.h"
 #include "shape/polyhedra/polyhedron.h"
 
@@ -111,8 +112,9 @@ static void place_box(const csg_cone_leaf *l, const csg_tape_formula *formula, c
 {
     for (int k = 0; k < 3; k++) {
         const float from = formula->low[k], to = formula->high[k];
-        float low = (float)(l->q[k] - l->rho * (1 + 1e-6)) - 1e-6f * (float)fabs(l->q[k]);
-        float high = (float)(l->q[k] + l->rho * (1 + 1e-6)) + 1e-6f * (float)fabs(l->q[k]);
+        double half = fmin(l->rho, l->half[k]) * (1 + 1e-6);
+        float low = (float)(l->q[k] - half) - 1e-6f * (float)fabs(l->q[k]);
+        float high = (float)(l->q[k] + half) + 1e-6f * (float)fabs(l->q[k]);
         seeds[k] = (csg_cone_box){{0, 0, 0}, {0, 0, 0}};
         seeds[k].low[k] = low > from && high < to ? 1 : 0;
         seeds[k].high[k] = high >= from && low <= to ? 1 : 0;
@@ -129,14 +131,32 @@ static void middle_of_box(const csg_cone_box *box, double middle[3], double half
     }
 }
 
-/* The gradients' box: its corners, or a ball around it. */
-static bool add_formula(csg_cone_leaf *l, const csg_tape *tape)
+/* What the formula's own value is where the leaf's is within the band; half a ulp for each of two
+ * roundings, and those of the value itself are the slack. */
+static range wanted_of(const csg_tape *tape, const csg_tape_node *leaf, double band)
+{
+    const float *parameters = tape->parameters + leaf->parameters;
+    double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
+    double most = (band + (double)parameters[CSG_LEAF_SLACK]) / fabs(sigma) * (1 + 0x1p-20);
+    double room = most + fabs(raise / sigma) * 0x1p-20;
+    return (range){(float)(-raise / sigma - room), (float)(-raise / sigma + room)};
+}
+
+/* The gradients' box: its corners, or a ball around it. None where the formula is nowhere within
+ * the band. */
+static bool add_formula(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_node *leaf)
 {
     enum { CORNERS = 8 };
     const csg_tape_formula *formula = &tape->formulas[(uint32_t)l->own[0]];
     csg_cone_box at, seeds[3], gradient;
+    range values[CSG_NARROW_MOST];
+    bool is_narrowed = l->band < INFINITY && formula->count <= CSG_NARROW_MOST;
     place_box(l, formula, &at, seeds);
-    if (!csg_cone_formula(tape, formula, &at, seeds, &gradient, &l->balls->has_edges))
+    if (is_narrowed &&
+        !csg_narrow_formula(tape, formula, &at, wanted_of(tape, leaf, l->band), values))
+        return true;
+    if (!csg_cone_formula(tape, formula, &at, seeds, is_narrowed ? values : NULL, &gradient,
+                          &l->balls->has_edges))
         return false;
     double middle[3], half[3];
     middle_of_box(&gradient, middle, half);
@@ -161,14 +181,19 @@ static bool add_primitive(csg_cone_leaf *l, csg_primitive_kind kind)
 
 static void place_affine(csg_cone_leaf *l, const float *frame, const double c[3], double sigma)
 {
-    double norm = csg_cone_norm(frame);
+    double norm = csg_cone_norm(frame), own_half[3];
     for (int i = 0; i < 3; i++) {
         l->q[i] = (double)frame[9 + i];
+        double half = 0;
         for (int k = 0; k < 3; k++) {
             l->q[i] += (double)frame[3 * i + k] * c[k];
             l->turn[k][i] = sigma * (double)frame[3 * i + k];
+            half += fabs((double)frame[3 * i + k]) * l->half[k];
         }
+        own_half[i] = half;
     }
+    for (int i = 0; i < 3 && l->half[i] < INFINITY; i++)
+        l->half[i] = own_half[i];
     l->rho *= norm;
     l->norm = fabs(sigma) * norm;
 }
@@ -199,7 +224,7 @@ static bool add_placed(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_no
     if (leaf->op == CSG_OP_SHAPE)
         return add_shape(l, tape);
     if (leaf->op == CSG_OP_FIELD)
-        return add_formula(l, tape);
+        return add_formula(l, tape, leaf);
     return csg_op_is_primitive(leaf->op) && add_primitive(l, csg_op_node_kind(leaf->op));
 }
 
@@ -208,13 +233,18 @@ static bool has_faces(uint8_t op)
     return op == CSG_OP_SHAPE || csg_op_has(op, CSG_TRAIT_FACES);
 }
 
-bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
-                       const float c[3], double radius)
+bool csg_cone_add_leaf_in(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                          const csg_cone_region *region)
 {
     /* the slack: the frame's own rounding */
+    const float *c = region->c;
     double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
+    double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    double half = leaf->warp ? INFINITY : region->half + slack;
     csg_cone_leaf l = {.balls = balls,
-                       .rho = radius + (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK],
+                       .rho = region->radius + slack,
+                       .half = {half, half, half},
+                       .band = region->band,
                        .bend = INFINITY};
     csg_cone_way way;
     uint32_t first = balls->count;
@@ -229,6 +259,13 @@ bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_ta
     if (has_faces(leaf->op) && balls->count - first > 1)
         balls->corner = l.norm; /* in its own frame they are unit vectors */
     return !leaf->warp || csg_cone_unwarp(&way, balls, first);
+}
+
+bool csg_cone_add_leaf(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                       const float c[3], double radius)
+{
+    const csg_cone_region ball = {{c[0], c[1], c[2]}, radius, INFINITY, INFINITY};
+    return csg_cone_add_leaf_in(balls, tape, leaf, &ball);
 }
 
 /* Is the formula a function of the coordinates all over, and not of some that are held? */
@@ -251,7 +288,8 @@ static bool place_formula(placed_formula *p, const csg_tape *tape, const csg_tap
 {
     double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
     double slack = (double)tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
-    *p = (placed_formula){.leaf = {.rho = radius + slack}};
+    *p = (placed_formula){
+        .leaf = {.rho = radius + slack, .half = {INFINITY, INFINITY, INFINITY}, .band = INFINITY}};
     if (leaf->op != CSG_OP_FIELD || leaf->warp)
         return false;
     place(&p->leaf, tape, leaf, at);
@@ -282,7 +320,8 @@ bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const f
     p.leaf.balls = &balls;
     p.leaf.rho = p.slack;
     place_box(&p.leaf, p.formula, &p.box, p.seeds);
-    if (!csg_cone_formula(tape, p.formula, &p.box, p.seeds, &gradient, &has_edges) || has_edges)
+    if (!csg_cone_formula(tape, p.formula, &p.box, p.seeds, NULL, &gradient, &has_edges) ||
+        has_edges)
         return false;
     double middle[3], half[3];
     middle_of_box(&gradient, middle, half);
@@ -312,8 +351,11 @@ bool csg_cone_find_faces(csg_cone_balls *balls, csg_cone_face faces[CSG_CONE_MOS
     const float *parameters = tape->parameters + leaf->parameters;
     double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
     double at[3] = {(double)c[0], (double)c[1], (double)c[2]};
-    csg_cone_leaf l = {
-        .balls = balls, .faces = faces, .rho = radius + (double)parameters[CSG_LEAF_SLACK]};
+    csg_cone_leaf l = {.balls = balls,
+                       .faces = faces,
+                       .rho = radius + (double)parameters[CSG_LEAF_SLACK],
+                       .half = {INFINITY, INFINITY, INFINITY},
+                       .band = INFINITY};
     balls->count = 0;
     if (leaf->warp || !csg_op_has(leaf->op, CSG_TRAIT_FACES) || !add_placed(&l, tape, leaf, at) ||
         l.face_count != balls->count || !(-raise / sigma >= l.sharp_from))

@@ -9,6 +9,20 @@
 #include "field/tape.h"
 #include "scene/primitives/cone_ball.h"
 
+/* Where gradients are asked for: in a ball, a cube with the same centre, and where the field is
+ * near to zero. Formulas heed all three, other leaves the ball. */
+typedef struct csg_cone_region {
+    float c[3];
+    double radius;
+    double half; /* of the cube's edge; INFINITY: all of the ball */
+    double band; /* |f| of the leaf, at most; INFINITY: all */
+} csg_cone_region;
+
+/* As csg_cone_add_leaf, of a part of the ball; nothing where the leaf is nowhere within the band.
+ */
+bool csg_cone_add_leaf_in(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
+                          const csg_cone_region *region);
+
 /* Adds what holds all gradients of a leaf in the ball: they are in the balls' convex hull, or,
  * where faces meet and balls->corner is not 0, combinations with weights >= 0 whose sum is at least
  * 1. False: no bound, or too many. */

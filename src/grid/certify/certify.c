@@ -10,6 +10,7 @@
 
 #include "base/pool.h"
 #include "base/trace.h"
+#include "field/cones/near_slopes.h"
 #include "field/kernels/dispatch.h"
 #include "field/unit_slopes.h"
 #include "grid/certify/certify_block.h"
@@ -211,6 +212,14 @@ static uint32_t block_budget(size_t cubes)
     return (uint32_t)(share < least ? least : share > most ? most : share);
 }
 
+static bool has_formulas(const csg_tape *tape)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < tape->count && !any; i++)
+        any = tape->nodes[i].op == CSG_OP_FIELD;
+    return any;
+}
+
 static bool create_worker(const walk *w, csg_certify_worker *self)
 {
     csg_memory *memory = &w->context->memory;
@@ -221,6 +230,7 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
                                  .size = w->options->size,
                                  .cancelled = w->options->cancelled,
                                  .user = w->options->user,
+                                 .has_formulas = has_formulas(&w->field.tape),
                                  .most_block_visits = block_budget(w->cube_count)};
     csg_pruner_init(&self->plain, memory, kernel, rounding);
     csg_pruner_init(&self->wide, memory, kernel, rounding);
@@ -234,7 +244,12 @@ static bool create_worker(const walk *w, csg_certify_worker *self)
     self->reach.noise = 4 * self->reach.lipschitz * (double)rounding;
     self->reach.band = 2 * self->reach.lipschitz * w->lattice->cell_size;
     self->reach.scratch = csg_memory_alloc(memory, self->reach.scratch_floats * sizeof(float));
-    return self->samples && self->reach.scratch;
+    bool is_divided = csg_tape_has_near_slopes(&w->field.tape);
+    size_t bytes = w->field.parameter_count * sizeof *self->near;
+    self->near = is_divided ? csg_memory_alloc(memory, bytes) : NULL;
+    if (self->near)
+        memcpy(self->near, w->field.tape.parameters, bytes);
+    return self->samples && self->reach.scratch && (self->near || !is_divided);
 }
 
 static bool create(walk *w)
@@ -264,6 +279,7 @@ static void release(walk *w)
         csg_arena_reset(&self->tapes);
         csg_memory_release(memory, self->samples, sizeof *self->samples);
         csg_memory_release(memory, self->reach.scratch, self->reach.scratch_floats * sizeof(float));
+        csg_memory_release(memory, self->near, w->field.parameter_count * sizeof *self->near);
         csg_memory_release(memory, self->stack, self->stack_capacity * sizeof *self->stack);
         csg_memory_release(memory, self->findings, self->finding_capacity * sizeof *self->findings);
     }

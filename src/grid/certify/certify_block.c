@@ -2,9 +2,9 @@
  * Dividing a block until every cube of it is settled. In the order tried:
  *
  *   empty      the field's interval over the cube does not hold 0
- *   far cone   one direction climbs at m all over the cube and HALF_FAR or FAR cells around: what
- *              hides in the cube is then the tip of a cone that holds a lattice point. Cubes down
- *              to a cell.
+ *   far cone   one direction climbs all over the cube and HALF_FAR to FAR cells around, where |f| is
+ *              small: what hides in the cube is then the tip of a cone that holds a lattice point.
+ *              Cubes down to a cell.
  *   near cone  the same around a cube within a cell, so that all that hides in it is connected with
  *              one of two places up and down that direction: one way from each of them to the
  *              lattice (certify_reach.h) answers for the cube
@@ -17,13 +17,23 @@
 #include <string.h>
 
 #include "field/cones/cone.h"
+#include "field/cones/near_slopes.h"
 #include "scene/warp_kinds.h"
 
 static const double ROOT3 = 1.7320508075688772 * (1 + 0x1p-40);
-static const double FAR = 2.5, HALF_FAR = 1.3;  /* cells */
+/* In cells: how far around a cube its tape is valid, and around one of several cells. A cone within
+ * FAR_CUBE of these, and the balls of the band that end in it, are then where that one's tape is.
+ */
+static const double FAR = 2.5, WIDE_FAR = 3;
+/* Where slopes of formulas are those near a cube of several cells: what is looked at around a cell
+ * of it goes 2.5 cells from its centre and has balls of a cell, or 1.3 beyond it and balls of two.
+ */
+static const double AROUND = 4;
+/* How far a cone is asked for first, and at most where formulas are in it, which heed cubes. */
+static const double HALF_FAR = 1.3, HALF_FAR_CUBE = 1.1, FAR_CUBE = 2.1;
+static const double LOCAL = 1.3, OWN = 2.6;     /* near cones, within a cell and of all of it */
 static const double NEAR = 1.45, WIDE_NEAR = 8; /* radii of the cube */
 static const double WIDER = 1.2;                /* than a smaller cone needs */
-static const double LOCAL = 1.3;
 
 enum {
     MOST_VISITS = 20000,  /* of cubes, a cell */
@@ -100,6 +110,8 @@ static bool follow(csg_certify_worker *w, uint32_t cell, const double p[3], doub
     csg_reach_end end;
     if (csg_reach_slide(&w->local, p, sign * value, sign, &w->trail))
         return true;
+    if (w->near)
+        csg_reach_values(&w->reach, (const double(*)[3])p, 1, &value);
     csg_reach_state state = csg_reach_from(&w->reach, p, sign * value, sign, &w->trail, &end);
     if (state == CSG_REACH_SAMPLE)
         return true;
@@ -129,51 +141,98 @@ static void along(const csg_certify_cube *cube, const double axis[3], double t, 
     }
 }
 
-static csg_tape tape_of(const csg_certify_worker *w, const csg_certify_cube *cube)
+static bool is_cell(const csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    return 2 * cube->half > 0.75 * w->lattice->cell_size;
+}
+
+static csg_tape near_tape(const csg_certify_worker *w)
 {
     csg_tape tape = *w->reach.tape;
+    if (w->near)
+        tape.parameters = w->near;
+    return tape;
+}
+
+static csg_tape tape_of(const csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    csg_tape tape = near_tape(w);
     tape.nodes = cube->nodes;
     tape.count = cube->node_count;
     return tape;
 }
 
-static bool cone_around(csg_certify_worker *w, const csg_tape *tape, const double at[3],
-                        double radius, csg_cone *cone)
+/* Values that are this far from zero have a ball that holds a lattice point. */
+static double band_of(const csg_certify_worker *w)
 {
-    const float c[3] = {(float)at[0], (float)at[1], (float)at[2]};
-    double reach = radius * (1 + 0x1p-20) + (double)w->wide.rounding;
-    bool found = csg_cone_find(&w->cones, tape, c, reach, cone);
+    return 0.5 * ROOT3 * 1.01 * w->reach.lipschitz * w->lattice->cell_size;
+}
+
+/* In the ball around a point and in the cube of that half edge, within the band. */
+static bool cone_around(csg_certify_worker *w, const csg_tape *tape, const csg_certify_cube *cube,
+                        double radius, double half, double band, csg_cone *cone)
+{
+    const csg_cone_region region = {.c = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]},
+                                    .radius = radius * (1 + 0x1p-20) + (double)w->wide.rounding,
+                                    .half = half * (1 + 0x1p-20) + (double)w->wide.rounding,
+                                    .band = band};
+    bool found = csg_cone_find_in(&w->cones, tape, &region, cone);
     w->out_of_memory |= cone->out_of_memory;
     return found;
 }
 
-static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double radius,
+static bool cone_of(csg_certify_worker *w, const csg_certify_cube *cube, double radius, double half,
                     csg_cone *cone)
 {
     csg_tape tape = tape_of(w, cube);
-    return cone_around(w, &tape, cube->c, radius, cone);
+    return cone_around(w, &tape, cube, radius, half, band_of(w), cone);
 }
 
-/* What is inside climbs up the cone: t cells up it holds a ball of radius m t / lambda, and half a
- * cell's diagonal is enough. The cone's own bound on slopes counts for balls that lie in it. */
-static bool climbs_far(const csg_certify_worker *w, const csg_cone *cone, double far)
+/* A region that a cone is asked for around a cube: its ball and its cube, in cells beyond the
+ * cube's own. */
+typedef struct surroundings {
+    double ball, cube;
+} surroundings;
+
+/* What is inside climbs up the cone. s cells up it the field is m s at least, whose ball holds a
+ * lattice point where it is as large as half a cell's diagonal; and it has not fallen on the way to
+ * any point of the cell-sized cube around that place where s v . g >= (|g_x| + |g_y| + |g_z|) / 2,
+ * and one of these is a lattice point. *wanted: the surroundings that have room for such an s. */
+static bool climbs_far(const csg_certify_worker *w, const csg_cone *cone, const surroundings *far,
+                       surroundings *wanted)
 {
-    const double diagonal = 0.5 * ROOT3 * 1.01, up = far - 0.05;
-    double slope = fmin(w->reach.lipschitz, cone->most * (1 + 0x1p-12));
-    return cone->least * up > diagonal * w->reach.lipschitz ||
-           cone->least * (up - diagonal) > diagonal * slope;
+    static const double slack = 1e-3, more = 1.1;
+    double across = 0, ball = cone->fills_cube ? INFINITY : far->ball;
+    for (int k = 0; k < 3; k++)
+        across = fmax(across, fabs(cone->axis[k]));
+    double up = fmin(ball - 0.05, (far->cube - slack) / across), needed = 0.5 * cone->lean;
+    double s = fmin(ball - 0.5 * ROOT3, (far->cube - 0.5) / across) - slack;
+    *wanted =
+        (surroundings){.ball = 0.5 * ROOT3 + more * needed, .cube = 0.5 + more * needed * across};
+    return cone->least * up > 0.5 * ROOT3 * 1.01 * w->reach.lipschitz || s > needed * (1 + slack);
 }
 
-/* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough. */
-static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone)
+/* The far cone: settles all cells in the cube. Where slopes differ little a short way is enough;
+ * that of formulas is as long as they ask for, since their bounds grow with it. *nearer: a smaller
+ * region may have a cone; that of formulas alone is hardly larger than a near cone's. */
+static bool has_far_cone(csg_certify_worker *w, const csg_certify_cube *cube, csg_cone *cone,
+                         bool *nearer)
 {
     double h = w->lattice->cell_size;
-    const double fars[2] = {HALF_FAR, FAR};
+    const surroundings most = {FAR, w->has_formulas ? FAR_CUBE : INFINITY};
+    surroundings far = {HALF_FAR, w->has_formulas ? HALF_FAR_CUBE : INFINITY}, wanted;
     for (int i = 0; i < 2; i++) {
-        if (!cone_of(w, cube, ROOT3 * cube->half + fars[i] * h, cone))
+        if (!cone_of(w, cube, ROOT3 * cube->half + far.ball * h, cube->half + far.cube * h, cone)) {
+            *nearer = i > 0 || !cone->fills_cube;
             return false;
-        if (climbs_far(w, cone, fars[i]))
+        }
+        *nearer = true;
+        if (climbs_far(w, cone, &far, &wanted))
             return true;
+        bool fits = wanted.cube <= most.cube && (cone->fills_cube || wanted.ball <= most.ball);
+        if (cone->fills_cube && !fits)
+            return false;
+        far = fits && w->has_formulas ? wanted : most;
     }
     return false;
 }
@@ -191,6 +250,32 @@ static bool balls_cover(const csg_certify_worker *w, double r, double apart, con
         layer -= sqrt(radius * radius - r * r);
     }
     return layer <= w->size;
+}
+
+/* Whether the surface itself may have an edge in the cube: operands and faces that only take part
+ * around it do not count. */
+static bool has_edge(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
+    double r = ROOT3 * cube->half, thin = w->reach.noise;
+    csg_tape tape = tape_of(w, cube), own;
+    csg_cone cone;
+    csg_arena_mark mark = csg_arena_get_mark(&w->tapes);
+    bool done = csg_prune_cube(&w->plain, &tape, c, (float)(r * (1 + 0x1p-20)));
+    bool is_here = done && csg_prune_state(&w->plain, 0) == CSG_CELL_SURFACE;
+    if (is_here)
+        done = csg_prune_shorten(&w->plain, 0, (float)thin, &w->tapes, &own);
+    w->out_of_memory |= !done;
+    bool has_one = is_here && done &&
+                   (!cone_around(w, &own, cube, r, cube->half, thin, &cone) || cone.is_crease);
+    csg_arena_release_to(&w->tapes, mark);
+    return has_one;
+}
+
+static csg_cell_kind kind_of(csg_certify_worker *w, const csg_certify_cube *cube,
+                             const csg_cone *around)
+{
+    return around->is_crease && has_edge(w, cube) ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED;
 }
 
 /* Two places up and down a cone, `height` radii of the cube from its centre. */
@@ -220,8 +305,8 @@ static bool is_met(csg_certify_worker *w, const csg_certify_cube *cube, meeting 
     for (int side = 0; side < 2; side++)
         least = fmin(least, fmin(fabs(m->values[side]), w->local.band));
     double climbed = m->cone.least * m->height * r + least * (1 - 0x1p-12);
-    *needed = m->height * slope * r / climbed;
-    return climbed > slope * r * (1 + 0x1p-12);
+    *needed = fmin(m->height * slope * r / climbed, m->cone.steep);
+    return climbed > slope * r * (1 + 0x1p-12) || m->height > m->cone.steep * (1 + 0x1p-12);
 }
 
 /* In a wider ball than the cube's own tape is for. */
@@ -237,7 +322,7 @@ static bool has_wide_cone(csg_certify_worker *w, const csg_certify_cube *cube, d
     if (is_here)
         done = csg_prune_shorten(&w->wide, 0, (float)w->local.band, &w->tapes, &tape);
     w->out_of_memory |= !done;
-    bool found = done && is_here && cone_around(w, &tape, cube->c, radius, cone);
+    bool found = done && is_here && cone_around(w, &tape, cube, radius, INFINITY, band_of(w), cone);
     csg_arena_release_to(&w->tapes, mark);
     return found;
 }
@@ -247,13 +332,16 @@ static bool find_meeting(csg_certify_worker *w, const csg_certify_cube *cube, me
 {
     double r = ROOT3 * cube->half, needed;
     m->height = NEAR;
-    if (!cone_of(w, cube, meeting_radius(NEAR) * r, &m->cone))
+    if (!cone_of(w, cube, meeting_radius(NEAR) * r, INFINITY, &m->cone))
         return false;
     if (is_met(w, cube, m, &needed))
         return true;
     m->height = WIDER * needed;
-    double radius = meeting_radius(m->height) * r;
-    return m->height <= WIDE_NEAR && radius < LOCAL * w->lattice->cell_size &&
+    double radius = meeting_radius(m->height) * r, h = w->lattice->cell_size;
+    if (w->has_formulas && is_cell(w, cube))
+        return radius < OWN * h && cone_of(w, cube, radius, INFINITY, &m->cone) &&
+               is_met(w, cube, m, &needed);
+    return m->height <= WIDE_NEAR && radius < LOCAL * h &&
            has_wide_cone(w, cube, radius, &m->cone) && is_met(w, cube, m, &needed);
 }
 
@@ -263,7 +351,7 @@ static bool follow_meeting(csg_certify_worker *w, const csg_certify_cube *cube, 
 {
     const int signs[2] = {m->values[0] > 0 ? 1 : 0, m->values[1] < 0 ? -1 : 0};
     return follow_ends(w, cube, (const double(*)[3])m->p, m->values, signs,
-                       m->cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+                       kind_of(w, cube, &m->cone));
 }
 
 /* Two balls up and down the gradient. */
@@ -291,10 +379,11 @@ static bool settle_by_balls(csg_certify_worker *w, const csg_certify_cube *cube,
 }
 
 /* Near cone or balls; *settled tells whether the cube needs no division. */
-static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool *settled)
+static bool settle(csg_certify_worker *w, const csg_certify_cube *cube, bool may_meet,
+                   bool *settled)
 {
     meeting m;
-    *settled = find_meeting(w, cube, &m);
+    *settled = may_meet && find_meeting(w, cube, &m);
     return *settled ? follow_meeting(w, cube, &m) : settle_by_balls(w, cube, settled);
 }
 
@@ -428,27 +517,27 @@ static void use_own_tape(csg_certify_worker *w, const csg_certify_cube *cube)
 static bool look_at_small(csg_certify_worker *w, const csg_certify_cube *cube, bool *divide)
 {
     csg_cone cone;
-    bool settled = false, is_cell = 2 * cube->half > 0.75 * w->lattice->cell_size;
+    bool settled = false, may_meet = true, is_whole = is_cell(w, cube);
     *divide = false;
-    if (is_cell)
+    if (is_whole)
         use_own_tape(w, cube);
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;
-    if (!is_cell && !is_within_budget(w, cube))
+    if (!is_whole && !is_within_budget(w, cube))
         return give_up(w, cube);
-    if (is_cell && has_far_cone(w, cube, &cone)) {
-        note_crossed(w, cube, cone.is_crease ? CSG_CELL_CREASE : CSG_CELL_CERTIFIED);
+    if (is_whole && has_far_cone(w, cube, &cone, &may_meet)) {
+        note_crossed(w, cube, kind_of(w, cube, &cone));
         return true;
     }
-    if (!settle(w, cube, &settled))
+    if (!settle(w, cube, may_meet, &settled))
         return false;
     if (settled)
         return true;
-    if (is_cell && !slow_leaves(w, cube) && !look_for_missed(w, cube->cell))
+    if (is_whole && !slow_leaves(w, cube) && !look_for_missed(w, cube->cell))
         return false;
     if (w->kinds[cube->cell] == CSG_CELL_MISSED)
         return true;
-    if (is_cell && !is_within_budget(w, cube))
+    if (is_whole && !is_within_budget(w, cube))
         return give_up(w, cube);
     *divide = 2 * cube->half > w->size * (1 + 1e-9);
     return *divide || end_cube(w, cube);
@@ -477,7 +566,8 @@ static bool localize(csg_certify_worker *w, const csg_certify_cube *cube)
         w->local.low[axis] = cube->c[axis] - 0.99 * reach;
         w->local.high[axis] = cube->c[axis] + 0.99 * reach;
     }
-    return csg_prune_cube(&w->plain, w->reach.tape, c, (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
+    const csg_tape tape = near_tape(w);
+    return csg_prune_cube(&w->plain, &tape, c, (float)(reach * ROOT3 * (1 + 0x1p-20))) &&
            csg_prune_shorten(&w->plain, 0, (float)w->reach.band, &w->tapes, &w->local_tape);
 }
 
@@ -490,7 +580,9 @@ static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
     csg_tape tape = tape_of(w, cube), shorter;
     double h = w->lattice->cell_size, half = cube->half / 2, r = ROOT3 * half;
     bool is_small = 2 * half < 1.5 * h;
-    double reach = is_small && !(2 * half > 0.75 * h) ? meeting_radius(NEAR) * r : half + FAR * h;
+    double reach = is_small && !(2 * half > 0.75 * h)
+                       ? meeting_radius(NEAR) * r
+                       : half + (half > 1.5 * h ? WIDE_FAR : FAR) * h;
     float c[3][CSG_OCTANTS];
     for (int o = 0; o < CSG_OCTANTS; o++)
         for (int axis = 0; axis < 3; axis++)
@@ -525,14 +617,24 @@ static bool divide(csg_certify_worker *w, const csg_certify_cube *cube)
     return true;
 }
 
+/* For cubes within this one, and what they look at around. */
+static void use_near_slopes(csg_certify_worker *w, const csg_certify_cube *cube)
+{
+    const float c[3] = {(float)cube->c[0], (float)cube->c[1], (float)cube->c[2]};
+    csg_tape_set_near_slopes(w->reach.tape, c, cube->half + AROUND * w->lattice->cell_size,
+                             w->near);
+}
+
 static bool look_at(csg_certify_worker *w, const csg_certify_cube *cube)
 {
     csg_cone cone;
-    bool goes_on = true;
+    if (w->near && cube->half > 1.5 * w->lattice->cell_size)
+        use_near_slopes(w, cube);
+    bool goes_on = true, nearer;
     if (cube->cell < CSG_CELLS_PER_BLOCK) {
         if (!look_at_small(w, cube, &goes_on))
             return false;
-    } else if (has_far_cone(w, cube, &cone) && !cone.is_crease) {
+    } else if (has_far_cone(w, cube, &cone, &nearer) && !cone.is_crease) {
         note_crossed(w, cube, CSG_CELL_CERTIFIED);
         goes_on = false;
     }

@@ -37,9 +37,12 @@ typedef struct csg_certify_worker {
     const csg_lattice *lattice;
     double size;                /* where dividing ends */
     uint32_t most_block_visits; /* of cubes, a block */
+    bool has_formulas;
     csg_pruner plain, wide, cones;
     csg_arena tapes;
     csg_reach reach, local; /* the whole margin of the block; around the cell at hand */
+    float *near;            /* parameters with slopes near the cube at hand, or NULL: there are no
+                               others than the tape's */
     csg_tape local_tape;
     csg_reach_trail trail; /* of the cell at hand */
     csg_block block;

@@ -193,11 +193,12 @@ static bool climb_ridge(const csg_reach *reach, double p[3], double *value, int 
     return false;
 }
 
-static void add_to_trail(csg_reach_trail *trail, const double p[3], double value, int sign)
+static void add_to_trail(const csg_reach *reach, csg_reach_trail *trail, const double p[3],
+                         double value, int sign)
 {
     uint32_t place = trail->count++ % CSG_REACH_TRAIL;
     memcpy(trail->at[place], p, sizeof trail->at[place]);
-    trail->value[place] = value;
+    trail->value[place] = fmin(value, reach->band);
     trail->sign[place] = (int8_t)sign;
 }
 
@@ -212,25 +213,30 @@ static bool touches_trail(const csg_reach *reach, const double p[3], double valu
     return false;
 }
 
-/* The next point up the gradient, its ball touching that of p. */
+/* The furthest of a few points up the gradient whose ball touches that of p. */
 static bool slide_on(const csg_reach *reach, double p[3], double *value, int sign, double step)
 {
-    double g[3], next[1][3], risen;
+    enum { REACHES = 4 }; /* of as many lanes as kernels work on anyway */
+    double g[3], next[REACHES][3], risen[REACHES], far[REACHES], h = reach->lattice->cell_size;
     csg_reach_gradient(reach, p, g);
     double norm = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
     if (!(norm > 1e-3))
         return false;
-    for (int axis = 0; axis < 3; axis++)
-        next[0][axis] = p[axis] + sign * step * g[axis] / norm;
-    if (!is_within(reach, next[0]))
-        return false;
-    csg_reach_values(reach, (const double(*)[3])next, 1, &risen);
-    risen *= sign;
-    if (!(risen > *value && are_connected(reach, step, *value, risen)))
-        return false;
-    memcpy(p, next[0], sizeof next[0]);
-    *value = risen;
-    return true;
+    for (int i = 0; i < REACHES; i++) {
+        far[i] = fmin(0.7 * h, (double)(1 << i) * step);
+        for (int axis = 0; axis < 3; axis++)
+            next[i][axis] = p[axis] + sign * far[i] * g[axis] / norm;
+    }
+    csg_reach_values(reach, (const double(*)[3])next, REACHES, risen);
+    for (int i = REACHES - 1; i >= 0; i--) {
+        double up = sign * risen[i];
+        if (up > *value && are_connected(reach, far[i], *value, up) && is_within(reach, next[i])) {
+            memcpy(p, next[i], sizeof next[i]);
+            *value = up;
+            return true;
+        }
+    }
+    return false;
 }
 
 bool csg_reach_slide(const csg_reach *reach, const double from[3], double value, int sign,
@@ -238,19 +244,17 @@ bool csg_reach_slide(const csg_reach *reach, const double from[3], double value,
 {
     enum { STEPS = 12 };
     double way[STEPS][3], values[STEPS], p[3], h = reach->lattice->cell_size;
-    double step = fmax(value / reach->lipschitz, h / 256);
     memcpy(p, from, sizeof p);
     for (int i = 0; i < STEPS && value >= 0; i++) {
         memcpy(way[i], p, sizeof p);
         values[i] = value;
         if (touches_trail(reach, p, value, sign, trail) || holds_sample(reach, p, value, sign)) {
             for (int k = 0; k <= i; k++)
-                add_to_trail(trail, way[k], values[k], sign);
+                add_to_trail(reach, trail, way[k], values[k], sign);
             return true;
         }
-        if (!slide_on(reach, p, &value, sign, step))
+        if (!slide_on(reach, p, &value, sign, fmax(value / reach->lipschitz, h / 256)))
             return false;
-        step = fmin(0.7 * h, 2 * step);
     }
     return false;
 }
@@ -369,7 +373,7 @@ csg_reach_state csg_reach_from(const csg_reach *reach, const double from[3], dou
         return CSG_REACH_SAMPLE;
     if (found || (value >= 0 && has_way(reach, p, sign))) {
         for (uint32_t i = 0; trail && i < way.count; i++)
-            add_to_trail(trail, way.at[i], way.value[i], sign);
+            add_to_trail(reach, trail, way.at[i], way.value[i], sign);
         return CSG_REACH_SAMPLE;
     }
     double other = distance_to_other(reach, p, value / reach->lipschitz, sign);

@@ -429,7 +429,7 @@ static bool find_shares(const walker *w, const csg_tape_node *node, const csg_co
     const csg_tape_formula *formula = csg_tape_formula_of(w->tape, node);
     double most = fabs(times) * (double)formula->lipschitz;
     csg_cone_box shares;
-    if (!csg_cone_formula(w->tape, formula, at, UNITS, &shares, has_edges))
+    if (!csg_cone_formula(w->tape, formula, at, UNITS, NULL, &shares, has_edges))
         return false;
     for (uint32_t k = 0; k < node->arity; k++) {
         double low = times * (double)shares.low[k], high = times * (double)shares.high[k];
@@ -451,7 +451,7 @@ static bool find_pair(const walker *w, const csg_tape_node *node, const csg_cone
     const csg_tape_formula *formula = csg_tape_formula_of(w->tape, node);
     csg_cone_box along;
     bool has_edges = false;
-    if (node->arity < 2 || !csg_cone_formula(w->tape, formula, at, ALIKE, &along, &has_edges))
+    if (node->arity < 2 || !csg_cone_formula(w->tape, formula, at, ALIKE, NULL, &along, &has_edges))
         return false;
     double low = (double)along.low[0], high = (double)along.high[0];
     if (!(low > 0) || high - low > SAME * low)

@@ -58,6 +58,8 @@ typedef struct csg_cone_leaf {
     double sharp_from; /* {f >= level} is the faces' intersection for levels no less than this */
     const float *own;  /* parameters as packed */
     double q[3], rho;
+    double half[3];    /* of a box around q outside of which nothing matters, or INFINITY */
+    double band;       /* the leaf's values, as far as they matter, or INFINITY */
     double turn[3][3]; /* own gradient -> tape's: sigma times the frame's transpose */
     double norm;       /* of turn, at least */
     double bend;       /* own gradients', per length; INFINITY unless it is said */
