@@ -75,6 +75,29 @@ static block_lines lines_of(const csg_lattice *lattice, const csg_block *block)
     return lines;
 }
 
+/* Fills in what the field is at both ends of edges, given by their slots, where the block has kept
+ * it for the very places that roots would ask for: lower ends and what lies a step farther. */
+static void take_ends(const csg_block *block, const block_lines *lines, const uint16_t *slots,
+                      csg_edges *e)
+{
+    static const int STEP[3] = {1, N, N * N};
+    float values[CSG_BLOCK_POINTS];
+    bool are_same = block->ends;
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < E; i++)
+            are_same = are_same &&
+                       lines->point[axis][i] + lines->step[axis][i] == lines->point[axis][i + 1];
+    e->has_ends = are_same;
+    if (!are_same)
+        return;
+    csg_block_unpack_ends(block, values);
+    for (uint32_t i = 0; i < e->count; i++) {
+        int point = slots[i] % CSG_BLOCK_POINTS;
+        e->fa[i] = values[point];
+        e->fb[i] = values[point + STEP[slots[i] / CSG_BLOCK_POINTS]];
+    }
+}
+
 /* Where a part of a block lies: masks of the words' bits and a range of layers. */
 typedef struct part_range {
     uint64_t bits;
@@ -112,6 +135,7 @@ static void collect_edges(const csg_block *block, const block_lines *lines, part
             }
         }
     e->count = n;
+    take_ends(block, lines, slots, e);
 }
 
 static void write_positions(const csg_marching *m, const csg_edges *e, float *out)
@@ -447,6 +471,7 @@ static void collect_all_edges(const csg_block *block, const block_lines *lines, 
                     e->rank[n++] = (uint16_t)(axis * CSG_BLOCK_POINTS + (k * N + j) * N + i);
                 }
     e->count = n;
+    take_ends(block, lines, e->rank, e);
 }
 
 static int axis_of(uint16_t slot)
