@@ -9,13 +9,7 @@
  */
 #include "shape/lane.h"
 
-enum { WIDE = 2 * LANES < CSG_SHAPE_LANES ? 2 * LANES : CSG_SHAPE_LANES, PARTS = WIDE / LANES };
-
-/* Floats of all points. Places are kept as doubles, which hold them exactly. */
-typedef float narrow __attribute__((vector_size(WIDE * sizeof(float))));
-typedef int32_t narrow_mask __attribute__((vector_size(WIDE * sizeof(int32_t))));
-
-#define POSITIVE(x) (narrow)((narrow_mask)(x) & ((x) > (narrow){0}))
+enum { PARTS = WIDE / LANES };
 
 /* Those points that share a register of doubles. */
 typedef struct some_points {
@@ -27,18 +21,6 @@ typedef struct search {
     some_points part[PARTS];
     narrow at[3], error, limit;
 } search;
-
-/* A bit for each lane that is set. */
-static inline unsigned bits_of(const narrow_mask *m)
-{
-    enum { FOURS = sizeof *m / sizeof(csg_four_mask) };
-    csg_four_mask fours[FOURS];
-    unsigned bits = 0;
-    memcpy(fours, m, sizeof *m);
-    for (unsigned i = 0; i < FOURS; i++)
-        bits |= csg_four_bits(fours[i]) << 4 * i;
-    return bits;
-}
 
 /* ---- one triangle -----------------------------------------------------------------------------
  */
@@ -64,13 +46,14 @@ static inline void try_segment(lane *best, const vector *ap, csg_vec3 edge, cons
     *best = CHOOSE(is_nearer, squared, *best);
 }
 
-/* For the lanes of `counts`; it is farther than what they have from the others. */
-__attribute__((always_inline)) static inline void
-try_triangle(const csg_tree_triangle *t, double place, const mask *counts, some_points *s)
+/* For the lanes of `counts`; it is farther than what they have from the others. w: the square of
+ * the normal, ab x ac. */
+__attribute__((always_inline)) static inline void try_triangle(const csg_tree_triangle *t,
+                                                               csg_vec3 normal, double w,
+                                                               double place, const mask *counts,
+                                                               some_points *s)
 {
     const lane none = {0};
-    csg_vec3 normal = csg_vec3_cross(t->ab, t->ac);
-    double w = csg_vec3_dot(normal, normal);
     vector ap = {s->x - t->a.x, s->y - t->a.y, s->z - t->a.z};
     vector side = {normal.y * ap.z - normal.z * ap.y, normal.z * ap.x - normal.x * ap.z,
                    normal.x * ap.y - normal.y * ap.x};
@@ -123,6 +106,9 @@ static inline void set_limit(search *s)
 /* For the points of `bits`, a bit each. */
 static inline void try_place(const csg_tree *tree, uint32_t place, unsigned bits, search *s)
 {
+    const csg_tree_triangle *t = &tree->triangles[place];
+    csg_vec3 normal = csg_vec3_cross(t->ab, t->ac);
+    double w = csg_vec3_dot(normal, normal);
     mask each;
     for (int l = 0; l < LANES; l++)
         each[l] = 1 << l;
@@ -130,7 +116,7 @@ static inline void try_place(const csg_tree *tree, uint32_t place, unsigned bits
         unsigned of = bits >> k * LANES & EACH;
         mask counts = (((mask){0} + (int64_t)of) & each) != 0;
         if (of)
-            try_triangle(&tree->triangles[place], (double)place, &counts, &s->part[k]);
+            try_triangle(t, normal, w, (double)place, &counts, &s->part[k]);
     }
     set_limit(s);
 }
@@ -147,8 +133,7 @@ static inline void measure_rectangle(const csg_tree_leaf *leaf, uint32_t slot, c
         narrow along = away[0] * leaf->axis[e][0][slot] + away[1] * leaf->axis[e][1][slot] +
                        away[2] * leaf->axis[e][2][slot];
         narrow within = e < 2 ? s->error + leaf->half[e][slot] : s->error;
-        narrow over = along - within, under = -along - within;
-        along = POSITIVE(over) + POSITIVE(under); /* one of them is 0 */
+        along = POSITIVE(SIZE_OF(along) - within);
         sum += along * along;
     }
     *out = sum;
@@ -156,8 +141,7 @@ static inline void measure_rectangle(const csg_tree_leaf *leaf, uint32_t slot, c
 
 static inline unsigned near_bits(const narrow *squared, const search *s)
 {
-    narrow_mask near = *squared <= s->limit;
-    return bits_of(&near);
+    return BITS_OF(*squared <= s->limit);
 }
 
 /* What decides the order only. */
@@ -209,7 +193,7 @@ static inline void measure_box(const csg_tree_node *node, uint32_t slot, const s
     narrow sum = {0};
     for (int k = 0; k < 3; k++) {
         narrow below = node->low[k][slot] - s->at[k], above = s->at[k] - node->high[k][slot];
-        narrow outside = POSITIVE(below) + POSITIVE(above); /* one of them is 0 */
+        narrow outside = POSITIVE(LARGER(below, above));
         sum += outside * outside;
     }
     *out = sum;
