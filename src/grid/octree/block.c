@@ -207,7 +207,7 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     memcpy(block->at, at, sizeof block->at);
     block->nodes = tape->nodes;
     block->node_count = tape->count;
-    block->along = block->ends = NULL;
+    block->along = block->slopes = block->ends = NULL;
     (block->parts ? sample_parts : sample_whole)(block, samples, kernel, tape, lattice, scratch,
                                                  scratch_floats);
     collect_signs(block, lattice, samples->inside);

@@ -31,8 +31,9 @@ typedef struct csg_block {
     const csg_block_part *parts; /* eight, or NULL: the block has one tape */
     const float *along; /* of vertices, in the order of csg_marching_roots: their places along their
                            edges' axes; NULL: not known, as after sampling */
-    const float *ends;  /* values at the ends of crossed edges, point after point (csg_block_ends);
-                           NULL: not kept */
+    const float *slopes; /* gradients there, three floats each; NULL: not all known */
+    const float *ends;   /* values at the ends of crossed edges, point after point (csg_block_ends);
+                            NULL: not kept */
     uint32_t vertex_count, triangle_count;
     uint32_t first_vertex;
     uint64_t first_triangle;

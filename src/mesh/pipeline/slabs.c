@@ -199,7 +199,7 @@ static bool keep(csg_halo *halo, const csg_block *block)
     }
     *halo->blocks[halo->count] = *block;
     csg_block *copy = halo->blocks[halo->count++];
-    copy->along = copy->ends = NULL; /* as long as the block is at hand */
+    copy->along = copy->slopes = copy->ends = NULL; /* as long as the block is at hand */
     return true;
 }
 
