@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A block of 8^3 cells: its pruned tape, the signs of its 9^3 points and the lattice edges that the
- * surface crosses. No sample is kept.
+ * surface crosses. Of the samples only those at the ends of such edges are kept, and only of
+ * shapes, where each is a search.
  *
  * A lattice edge belongs to the block of its lower point. Edge (axis, x, y, z) of a block, each
  * coordinate in 0..7, is bit 8 y + x of crossed[axis][z]; its vertex is the block's first vertex
