@@ -17,6 +17,29 @@ typedef int64_t mask __attribute__((vector_size(LANES * sizeof(int64_t)))); /* a
 /* Not a function: vectors wider than the registers have no settled way to be passed to one. */
 #define CHOOSE(is_first, a, b) (lane)(((is_first) & (mask)(a)) | (~(is_first) & (mask)(b)))
 
+/* Beside them: floats of as many points as a register holds, two for each double but where that is
+ * more than are asked for at once. */
+enum { WIDE = 2 * LANES < CSG_SHAPE_LANES ? 2 * LANES : CSG_SHAPE_LANES };
+
+typedef float narrow __attribute__((vector_size(WIDE * sizeof(float))));
+typedef int32_t narrow_mask __attribute__((vector_size(WIDE * sizeof(int32_t))));
+
+/* The larger of both, the second where they are alike or one is no number; and a bit for each lane
+ * that is set. Where the compiler does not find the one instruction that these are, it is told. */
+#ifdef __AVX__
+#include <immintrin.h>
+#define LARGER(a, b) (narrow) _mm256_max_ps((__m256)(a), (__m256)(b))
+#define BITS_OF(m) (unsigned)_mm256_movemask_ps((__m256)(m))
+#elif defined(__SSE2__)
+#define LARGER(a, b) (narrow) _mm_max_ps((__m128)(a), (__m128)(b))
+#define BITS_OF(m) csg_four_bits((csg_four_mask)(m))
+#else
+#define LARGER(a, b) (narrow)((((a) > (b)) & (narrow_mask)(a)) | (~((a) > (b)) & (narrow_mask)(b)))
+#define BITS_OF(m) csg_four_bits((csg_four_mask)(m))
+#endif
+#define POSITIVE(x) LARGER(x, (narrow){0})
+#define SIZE_OF(x) (narrow)((narrow_mask)(x) & ((narrow_mask){0} + INT32_MAX))
+
 /* Whether some lane is set. */
 static inline bool is_some_lane(const mask *m)
 {

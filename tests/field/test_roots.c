@@ -54,7 +54,18 @@ static void test_kinks(void **state)
                 check_kink(kernels[k], pow(10, -i), 0.99, 0.1 * j);
 }
 
-/* A ball's edges alone and among others, on all instruction sets. */
+/* What the field is at both ends of the first edge. */
+static void find_ends(const csg_kernel *kernel, const csg_tape *tape, csg_edges *e)
+{
+    float x[CSG_LANES], f[CSG_LANES], zero[CSG_LANES] = {0}, scratch[4096];
+    for (int i = 0; i < CSG_LANES; i++)
+        x[i] = i % 2 ? e->ax[0] + e->dx[0] : e->ax[0];
+    kernel->values(tape, x, zero, zero, CSG_LANES, f, scratch, 4096);
+    e->fa[0] = f[0];
+    e->fb[0] = f[1];
+}
+
+/* A ball's edges alone and among others, with their ends given or not, on all instruction sets. */
 static void test_same_everywhere(void **state)
 {
     enum { COUNT = 50 };
@@ -77,6 +88,13 @@ static void test_same_everywhere(void **state)
             add_edge(&alone, together.ax[i], 0.25f);
             kernels[k]->roots(&s.field->tape, &alone, 1e-7f, scratch, 4096);
             assert_memory_equal(&alone.x[0], &together.x[i], sizeof(float));
+            alone.has_ends = true; /* those that values finds */
+            find_ends(kernels[k], &s.field->tape, &alone);
+            uint64_t asked = kernels[k]->roots(&s.field->tape, &alone, 1e-7f, scratch, 4096);
+            alone.has_ends = false;
+            assert_memory_equal(&alone.x[0], &together.x[i], sizeof(float));
+            assert_int_equal(kernels[k]->roots(&s.field->tape, &alone, 1e-7f, scratch, 4096),
+                             asked + 2);
         }
     test_subject_end(&s);
 }

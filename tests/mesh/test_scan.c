@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Doubtful edges among samples: one at any place of any line is found, and where it is.
+ * Doubtful edges among samples: one at any place of any line is found, and where it is. What is
+ * kept of a block's samples comes back.
  */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +10,8 @@
 
 #include <cmocka.h>
 
-#include "grid/octree/scan.h"
+#include "base/context.h"
+#include "grid/octree/block.h"
 
 enum { MOST = 9 };
 
@@ -99,12 +102,74 @@ static void test_crossed(void **state)
         }
 }
 
+/* Of a plane that cuts the block askew: which signs are those of the values, and the values at both
+ * ends of every crossed edge. */
+static void put_plane(csg_block *block, csg_block_samples *samples)
+{
+    block->ends = NULL;
+    for (int k = 0; k < MOST; k++)
+        for (int j = 0; j < MOST; j++) {
+            block->inside[k][j] = 0;
+            for (int i = 0; i < MOST; i++) {
+                float f = (float)i + 0.5f * (float)j - 0.25f * (float)k - 3.1f;
+                samples->values[(k * MOST + j) * MOST + i] = f;
+                block->inside[k][j] |= (uint16_t)((f >= 0) << i);
+            }
+        }
+}
+
+static bool is_inside(const csg_block *block, int at)
+{
+    return block->inside[at / (MOST * MOST)][at / MOST % MOST] >> at % MOST & 1;
+}
+
+static void check_ends(const csg_block *block, const csg_block_samples *samples)
+{
+    float back[CSG_BLOCK_POINTS];
+    int crossed = 0;
+    csg_block_unpack_ends(block, back);
+    for (int axis = 0; axis < 3; axis++)
+        for (int at = 0; at < CSG_BLOCK_POINTS; at++) {
+            int step = (int)step_of(MOST, axis), other = at + step;
+            if (at / step % MOST == MOST - 1 || is_inside(block, at) == is_inside(block, other))
+                continue;
+            assert_true(back[at] == samples->values[at] && back[other] == samples->values[other]);
+            crossed++;
+        }
+    assert_true(crossed > 100);
+}
+
+/* None are kept where one is not known or its sign was changed, if it is beside the surface. */
+static void test_ends(void **state)
+{
+    enum { BESIDE = 3, FAR_AWAY = 8 };
+    static csg_block block;
+    static csg_block_samples samples;
+    csg_memory memory;
+    csg_arena arena;
+    (void)state;
+    csg_memory_init(&memory, NULL, 0);
+    csg_arena_init(&arena, &memory);
+    put_plane(&block, &samples);
+    samples.values[FAR_AWAY] = NAN;
+    assert_true(csg_block_keep_ends(&block, &samples, &arena) && block.ends);
+    check_ends(&block, &samples);
+    put_plane(&block, &samples);
+    samples.values[BESIDE] = NAN;
+    assert_true(csg_block_keep_ends(&block, &samples, &arena) && !block.ends);
+    put_plane(&block, &samples);
+    block.inside[0][0] ^= 1 << BESIDE;
+    assert_true(csg_block_keep_ends(&block, &samples, &arena) && !block.ends);
+    csg_arena_reset(&arena);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_edge),
         cmocka_unit_test(test_sheet),
         cmocka_unit_test(test_crossed),
+        cmocka_unit_test(test_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,17 @@ static void set_all(float *array, size_t count, float value)
         array[i] = value;
 }
 
+static uint64_t evaluate_ends(csg_edges *e, const csg_tape *tape, float *scratch,
+                              size_t scratch_floats)
+{
+    size_t n = padded(e->count);
+    set_all(e->t, n, 0);
+    evaluate(e, tape, e->fa, scratch, scratch_floats);
+    set_all(e->t, n, 1);
+    evaluate(e, tape, e->fb, scratch, scratch_floats);
+    return 2 * (uint64_t)e->count;
+}
+
 /* A value is small against the field's change along the edge, whatever its slope: the place is then
  * known to 2^-14 of the edge, which nobody sees. Below the noise of rounding nothing is gained. */
 static void set_tolerances(csg_edges *e, float noise)
@@ -139,14 +150,12 @@ uint64_t CSG_THIS_ROOTS(const csg_tape *tape, csg_edges *e, float noise, float *
     if (!e->count)
         return 0;
     size_t n = padded(e->count);
-    uint64_t evaluations = 2 * (uint64_t)e->count;
+    uint64_t evaluations = 0;
     pad(e);
     set_all(e->ta, n, 0);
     set_all(e->tb, n, 1);
-    set_all(e->t, n, 0);
-    evaluate(e, tape, e->fa, scratch, scratch_floats);
-    set_all(e->t, n, 1);
-    evaluate(e, tape, e->fb, scratch, scratch_floats);
+    if (!e->has_ends)
+        evaluations += evaluate_ends(e, tape, scratch, scratch_floats);
     for (size_t i = e->count; i < n; i++)
         e->fa[i] = e->fa[0], e->fb[i] = e->fb[0];
     set_tolerances(e, noise);

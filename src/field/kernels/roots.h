@@ -16,6 +16,7 @@ enum {
 struct csg_edges {
     uint32_t count;
     float end_distance; /* roots keep this far from both ends: a part of the edge */
+    bool has_ends;      /* fa and fb are given: the field at both ends */
     float ax[CSG_BLOCK_MOST_EDGES], ay[CSG_BLOCK_MOST_EDGES], az[CSG_BLOCK_MOST_EDGES];
     float dx[CSG_BLOCK_MOST_EDGES], dy[CSG_BLOCK_MOST_EDGES], dz[CSG_BLOCK_MOST_EDGES];
     /* results: the point on the edge, and working room */

@@ -3,6 +3,7 @@
  */
 #include "grid/octree/block.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { N = CSG_BLOCK_SAMPLES };
@@ -60,6 +61,23 @@ static void sample_whole(csg_block *block, csg_block_samples *samples, const csg
     sample_points(samples, kernel, tape, lattice, first, N, scratch, scratch_floats);
     for (int i = 0; i < CSG_BLOCK_POINTS; i++)
         samples->inside[i] = samples->f[i] >= 0;
+    memcpy(samples->values, samples->f, sizeof samples->values);
+}
+
+/* What is known of a part, in the whole block. */
+static void take_part(csg_block_samples *samples, size_t begin, csg_cell_state state)
+{
+    enum { P = CSG_PART_EDGE + 1 };
+    const float *f = samples->f;
+    for (size_t k = 0; k < P; k++)
+        for (size_t j = 0; j < P; j++, f += P) {
+            size_t at = begin + (k * N + j) * N;
+            uint8_t *row = samples->inside + at;
+            for (size_t i = 0; i < P; i++)
+                row[i] = state != CSG_CELL_SURFACE ? state == CSG_CELL_INSIDE : f[i] >= 0;
+            if (state == CSG_CELL_SURFACE)
+                memcpy(samples->values + at, f, P * sizeof *f);
+        }
 }
 
 /* Part by part. Points on the planes between parts are in several: they agree in sign. */
@@ -68,6 +86,8 @@ static void sample_parts(csg_block *block, csg_block_samples *samples, const csg
                          size_t scratch_floats)
 {
     enum { P = CSG_PART_EDGE + 1 };
+    for (int i = 0; i < CSG_BLOCK_POINTS; i++)
+        samples->values[i] = NAN;
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
         const csg_block_part *part = &block->parts[octant];
         uint32_t first[3];
@@ -81,16 +101,9 @@ static void sample_parts(csg_block *block, csg_block_samples *samples, const csg
         csg_tape short_tape = *tape;
         short_tape.nodes = part->nodes;
         short_tape.count = part->node_count;
-        bool known = part->state != CSG_CELL_SURFACE;
-        if (!known)
+        if (part->state == CSG_CELL_SURFACE)
             sample_points(samples, kernel, &short_tape, lattice, first, P, scratch, scratch_floats);
-        const float *f = samples->f;
-        for (size_t k = 0; k < P; k++)
-            for (size_t j = 0; j < P; j++, f += P) {
-                uint8_t *row = samples->inside + begin + k * step[2] + j * step[1];
-                for (size_t i = 0; i < P; i++)
-                    row[i] = known ? part->state == CSG_CELL_INSIDE : f[i] >= 0;
-            }
+        take_part(samples, begin, part->state);
     }
 }
 
@@ -194,7 +207,7 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     memcpy(block->at, at, sizeof block->at);
     block->nodes = tape->nodes;
     block->node_count = tape->count;
-    block->along = NULL;
+    block->along = block->slopes = block->ends = NULL;
     (block->parts ? sample_parts : sample_whole)(block, samples, kernel, tape, lattice, scratch,
                                                  scratch_floats);
     collect_signs(block, lattice, samples->inside);
@@ -206,4 +219,67 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
     /* A block may touch the surface with its shared upper faces only: its cells still need
      * triangles, so it stays even without an edge of its own. */
     return true;
+}
+
+/* ---- ends of crossed edges --------------------------------------------------------------------
+ */
+
+/* Points that are such ends, in rows as block->inside; returns how many. */
+static uint32_t find_ends(const csg_block *block, uint16_t rows[N][N])
+{
+    uint32_t count = 0;
+    memset(rows, 0, N * sizeof *rows);
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++) {
+            uint16_t row = block->inside[k][j];
+            unsigned x = (row ^ row >> 1) & ((1u << (N - 1)) - 1);
+            uint16_t y = j + 1 < N ? row ^ block->inside[k][j + 1] : 0;
+            uint16_t z = k + 1 < N ? row ^ block->inside[k + 1][j] : 0;
+            rows[k][j] |= (uint16_t)(x | x << 1 | y | z);
+            if (y)
+                rows[k][j + 1] |= y;
+            if (z)
+                rows[k + 1][j] |= z;
+            count += (uint32_t)__builtin_popcount(rows[k][j]); /* nothing is added to it later */
+        }
+    return count;
+}
+
+/* False: some are not known, or signs have been changed since. An edge between values of both signs
+ * is within the band, where they are what everybody finds. */
+static bool pack_ends(const csg_block *block, uint16_t rows[N][N], const float *values, float *ends)
+{
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++, values += N)
+            for (unsigned rest = rows[k][j]; rest; rest &= rest - 1) {
+                int i = __builtin_ctz(rest);
+                bool inside = block->inside[k][j] >> i & 1;
+                if (isnan(values[i]) || (values[i] >= 0) != inside)
+                    return false;
+                *ends++ = values[i];
+            }
+    return true;
+}
+
+bool csg_block_keep_ends(csg_block *block, const csg_block_samples *samples, csg_arena *arena)
+{
+    uint16_t rows[N][N];
+    csg_arena_mark mark = csg_arena_get_mark(arena);
+    float *ends = csg_arena_alloc(arena, find_ends(block, rows) * sizeof *ends);
+    if (ends && pack_ends(block, rows, samples->values, ends))
+        block->ends = ends;
+    else
+        csg_arena_release_to(arena, mark);
+    return ends;
+}
+
+void csg_block_unpack_ends(const csg_block *block, float values[CSG_BLOCK_POINTS])
+{
+    uint16_t rows[N][N];
+    const float *ends = block->ends;
+    find_ends(block, rows);
+    for (int k = 0; k < N; k++)
+        for (int j = 0; j < N; j++, values += N)
+            for (unsigned rest = rows[k][j]; rest; rest &= rest - 1)
+                values[__builtin_ctz(rest)] = *ends++;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A block of 8^3 cells: its pruned tape, the signs of its 9^3 points and the lattice edges that the
- * surface crosses. No sample is kept.
+ * surface crosses. Of the samples only those at the ends of such edges are kept, and only of
+ * shapes, where each is a search.
  *
  * A lattice edge belongs to the block of its lower point. Edge (axis, x, y, z) of a block, each
  * coordinate in 0..7, is bit 8 y + x of crossed[axis][z]; its vertex is the block's first vertex
@@ -31,6 +32,9 @@ typedef struct csg_block {
     const csg_block_part *parts; /* eight, or NULL: the block has one tape */
     const float *along; /* of vertices, in the order of csg_marching_roots: their places along their
                            edges' axes; NULL: not known, as after sampling */
+    const float *slopes; /* gradients there, three floats each; NULL: not all known */
+    const float *ends;   /* values at the ends of crossed edges, point after point (csg_block_ends);
+                            NULL: not kept */
     uint32_t vertex_count, triangle_count;
     uint32_t first_vertex;
     uint64_t first_triangle;
@@ -57,6 +61,7 @@ static inline void csg_block_choose_tape(const csg_block *block, const int cell[
 typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];
     float f[CSG_BLOCK_POINTS_PADDED];
+    float values[CSG_BLOCK_POINTS]; /* of the whole block; NAN where nobody has asked */
     uint8_t inside[CSG_BLOCK_POINTS_PADDED];
     csg_scan *scan; /* looks at the values before they are forgotten; NULL = nobody does */
 } csg_block_samples;
@@ -66,5 +71,12 @@ typedef struct csg_block_samples {
 bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape *tape,
                       const csg_lattice *lattice, const uint32_t at[3], csg_beads *beads,
                       csg_block_samples *samples, float *scratch, size_t scratch_floats);
+
+/* Keeps the values at the ends of crossed edges, if all are known as the field has them: they are
+ * asked for again where roots are looked for, and of shapes each is a search. False: out of memory.
+ */
+bool csg_block_keep_ends(csg_block *block, const csg_block_samples *samples, csg_arena *arena);
+/* Of a block that has them: values by points. */
+void csg_block_unpack_ends(const csg_block *block, float values[CSG_BLOCK_POINTS]);
 
 #endif

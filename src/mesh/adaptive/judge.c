@@ -85,6 +85,7 @@ static bool has_edge(const csg_judge_room *room, const csg_brick *brick, int axi
 static void collect_edges(const csg_bricks *b, const csg_brick *brick, csg_judge_room *room)
 {
     room->edges.count = 0;
+    room->edges.has_ends = false;
     for (unsigned slot = 0; slot < CSG_BRICK_SLOTS; slot++) {
         unsigned low[3];
         int axis = csg_slot_place(slot, low);

@@ -129,6 +129,7 @@ uint64_t csg_feature_cell_find(const csg_marching *m, const csg_octree *octree,
     if (!m->tables->count[out->pattern])
         return evaluations;
     edges->count = 0;
+    edges->has_ends = false;
     edges->end_distance = m->end_distance;
     for (unsigned rest = crossed_edges(m->tables, out->pattern); rest; rest &= rest - 1)
         add_edge(m, cell, (unsigned)__builtin_ctz(rest), edges);

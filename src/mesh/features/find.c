@@ -58,8 +58,8 @@ static bool is_marked(const edge_rows *rows, unsigned slot)
 }
 
 /* Values and gradients at the vertices, by slot: at all of them, or on the edges of cells that may
- * crease. */
-static void take_gradients(csg_feature_room *room, csg_feature_probe *probe, bool at_all)
+ * crease. Whether these are all. */
+static bool take_gradients(csg_feature_room *room, csg_feature_probe *probe, bool at_all)
 {
     const csg_slots *slots = &room->slots;
     edge_rows rows;
@@ -80,6 +80,7 @@ static void take_gradients(csg_feature_room *room, csg_feature_probe *probe, boo
         for (int axis = 0; axis < 3; axis++)
             room->gradient[slot][axis] = room->g[axis][i];
     }
+    return count == slots->count;
 }
 
 /* ---- segments -------------------------------------------------------------------------------- */
@@ -441,6 +442,16 @@ static bool keep_roots(csg_feature_room *room, csg_block *block)
     return along;
 }
 
+/* The same of gradients there. */
+static bool keep_slopes(csg_feature_room *room, csg_block *block)
+{
+    float *slopes = csg_arena_alloc(&room->along, (size_t)3 * room->slots.count * sizeof *slopes);
+    if (slopes)
+        csg_marching_keep_slopes(&room->slots, room->gradient, slopes);
+    block->slopes = slopes;
+    return slopes;
+}
+
 static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_probe *probe,
                           csg_memory *memory)
 {
@@ -453,7 +464,9 @@ static bool find_in_block(csg_feature_room *room, csg_block *block, csg_feature_
                                              probe->scratch_floats);
     if (csg_marching_keeps_roots(m) && !keep_roots(room, block))
         return false;
-    take_gradients(room, probe, has_pairs);
+    if (take_gradients(room, probe, has_pairs) && csg_marching_keeps_slopes(m) &&
+        !keep_slopes(room, block))
+        return false;
     /* before gradients are corrected: that depends on the block, this must not */
     room->any_joined = has_pairs && csg_feature_pair(room, probe);
     if (!possible && !room->any_joined)

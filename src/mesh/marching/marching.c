@@ -75,6 +75,29 @@ static block_lines lines_of(const csg_lattice *lattice, const csg_block *block)
     return lines;
 }
 
+/* Fills in what the field is at both ends of edges, given by their slots, where the block has kept
+ * it for the very places that roots would ask for: lower ends and what lies a step farther. */
+static void take_ends(const csg_block *block, const block_lines *lines, const uint16_t *slots,
+                      csg_edges *e)
+{
+    static const int STEP[3] = {1, N, N * N};
+    float values[CSG_BLOCK_POINTS];
+    bool are_same = block->ends;
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < E; i++)
+            are_same = are_same &&
+                       lines->point[axis][i] + lines->step[axis][i] == lines->point[axis][i + 1];
+    e->has_ends = are_same;
+    if (!are_same)
+        return;
+    csg_block_unpack_ends(block, values);
+    for (uint32_t i = 0; i < e->count; i++) {
+        int point = slots[i] % CSG_BLOCK_POINTS;
+        e->fa[i] = values[point];
+        e->fb[i] = values[point + STEP[slots[i] / CSG_BLOCK_POINTS]];
+    }
+}
+
 /* Where a part of a block lies: masks of the words' bits and a range of layers. */
 typedef struct part_range {
     uint64_t bits;
@@ -112,6 +135,7 @@ static void collect_edges(const csg_block *block, const block_lines *lines, part
             }
         }
     e->count = n;
+    take_ends(block, lines, slots, e);
 }
 
 static void write_positions(const csg_marching *m, const csg_edges *e, float *out)
@@ -206,8 +230,16 @@ static void take_places(csg_marching_room *room)
     }
 }
 
+/* The same of their gradients. */
+static void take_slopes(const csg_marching_room *room, float *const out[3])
+{
+    for (uint32_t i = 0; i < room->edges.count; i++)
+        for (int axis = 0; axis < 3; axis++)
+            out[axis][i] = room->slopes[room->slots.slot[i]][axis];
+}
+
 /* Roots (unless room->slots has them), normals, colours and materials of the collected edges. */
-static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, bool are_known,
+static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, const csg_block *block,
                               csg_marching_room *room, const csg_marching_output *out,
                               float *scratch, size_t scratch_floats)
 {
@@ -218,14 +250,17 @@ static uint64_t make_vertices(const csg_marching *m, const csg_tape *tape, bool 
         return 0;
     e->end_distance = m->end_distance;
     uint64_t evaluations = 0;
-    if (are_known)
+    if (block->along)
         take_places(room);
     else
         evaluations = m->kernel->roots(tape, e, m->noise, scratch, scratch_floats);
     write_positions(m, e, out->positions);
     if (out->normals) {
-        csg_marching_gradients(m, tape, e->x, e->y, e->z, e->count, channels, scratch,
-                               scratch_floats);
+        if (block->slopes)
+            take_slopes(room, channels);
+        else
+            csg_marching_gradients(m, tape, e->x, e->y, e->z, e->count, channels, scratch,
+                                   scratch_floats);
         write_normals(e, channels, out->normals);
     }
     if (out->colors)
@@ -242,14 +277,15 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
     csg_tape tape = m->field->tape;
     block_lines lines = lines_of(m->lattice, block);
     uint16_t *slots = room->slots.slot;
-    bool are_known = block->along;
-    if (are_known)
+    if (block->along)
         csg_marching_roots(m, block, &room->edges, &room->slots, scratch, scratch_floats);
+    for (uint32_t i = 0; block->slopes && i < room->slots.count; i++)
+        memcpy(room->slopes[slots[i]], block->slopes + (size_t)3 * i, sizeof room->slopes[0]);
     if (!block->parts) {
         tape.nodes = block->nodes;
         tape.count = block->node_count;
         collect_edges(block, &lines, (part_range){~(uint64_t)0, 0, E}, &room->edges, slots);
-        return make_vertices(m, &tape, are_known, room, out, scratch, scratch_floats);
+        return make_vertices(m, &tape, block, room, out, scratch, scratch_floats);
     }
     uint64_t evaluations = 0;
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
@@ -259,7 +295,7 @@ uint64_t csg_marching_vertices(const csg_marching *m, const csg_block *block,
         tape.nodes = part->nodes;
         tape.count = part->node_count;
         collect_edges(block, &lines, range_of_part(octant), &room->edges, slots);
-        evaluations += make_vertices(m, &tape, are_known, room, out, scratch, scratch_floats);
+        evaluations += make_vertices(m, &tape, block, room, out, scratch, scratch_floats);
     }
     return evaluations;
 }
@@ -447,6 +483,7 @@ static void collect_all_edges(const csg_block *block, const block_lines *lines, 
                     e->rank[n++] = (uint16_t)(axis * CSG_BLOCK_POINTS + (k * N + j) * N + i);
                 }
     e->count = n;
+    take_ends(block, lines, e->rank, e);
 }
 
 static int axis_of(uint16_t slot)
@@ -463,6 +500,17 @@ void csg_marching_keep_roots(const csg_slots *slots, float *along)
 {
     for (uint32_t i = 0; i < slots->count; i++)
         along[i] = slots->at[slots->slot[i]][axis_of(slots->slot[i])];
+}
+
+bool csg_marching_keeps_slopes(const csg_marching *m)
+{
+    return csg_marching_keeps_roots(m) && !m->field->tape.turns;
+}
+
+void csg_marching_keep_slopes(const csg_slots *slots, float (*by_slot)[3], float *slopes)
+{
+    for (uint32_t i = 0; i < slots->count; i++)
+        memcpy(slopes + (size_t)3 * i, by_slot[slots->slot[i]], sizeof *by_slot);
 }
 
 /* As the edges' roots: from a zero with a sign both make one without. */

@@ -76,6 +76,7 @@ typedef struct csg_marching_room {
     uint32_t vertex[3][CSG_BLOCK_POINTS]; /* of crossed edges only */
     uint32_t indices[CSG_BLOCK_MOST_INDICES + CSG_CELL_MOST_INDICES];
     csg_slots slots;
+    float slopes[3 * CSG_BLOCK_POINTS][3]; /* gradients by slots, of a block that has kept them */
 } csg_marching_room;
 
 typedef struct csg_marching {
@@ -110,6 +111,10 @@ uint64_t csg_marching_roots(const csg_marching *marching, const csg_block *block
  * each value, at four bytes a vertex. along: as many as slots, for block->along. */
 bool csg_marching_keeps_roots(const csg_marching *marching);
 void csg_marching_keep_roots(const csg_slots *slots, float *along);
+/* Whether the gradients there are, too: where normals are of the field's own. By slots, to
+ * block->slopes. */
+bool csg_marching_keeps_slopes(const csg_marching *marching);
+void csg_marching_keep_slopes(const csg_slots *slots, float (*by_slot)[3], float *slopes);
 
 /* The same by the mesh's frame, in room->slots. */
 uint64_t csg_marching_shifted_roots(const csg_marching *marching, const csg_block *block,

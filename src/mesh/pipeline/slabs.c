@@ -198,7 +198,8 @@ static bool keep(csg_halo *halo, const csg_block *block)
         halo->blocks[halo->with_spare++] = fresh;
     }
     *halo->blocks[halo->count] = *block;
-    halo->blocks[halo->count++]->along = NULL; /* as long as the block is at hand */
+    csg_block *copy = halo->blocks[halo->count++];
+    copy->along = copy->slopes = copy->ends = NULL; /* as long as the block is at hand */
     return true;
 }
 

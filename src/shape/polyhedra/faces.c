@@ -25,30 +25,37 @@ typedef struct taking {
     const csg_polyhedron *solid;
     csg_shape_take_normal *take;
     void *user;
-    uint32_t count;
 } taking;
+
+static bool count_triangle(void *user, uint32_t place)
+{
+    size_t *left = user;
+    return --*left > 0;
+}
 
 static bool take_triangle(void *user, uint32_t place)
 {
-    enum { MOST = 256 };
     taking *t = user;
-    return ++t->count <= MOST &&
-           t->take(t->user, csg_polyhedron_inward(&t->solid->tree.triangles[place])) &&
+    return t->take(t->user, csg_polyhedron_inward(&t->solid->tree.triangles[place])) &&
            csg_polyhedron_is_plain_beyond(t->solid, place, INFINITY);
 }
 
-/* Within the ball distances are at most that of c and its radius. */
+/* Within the ball distances are at most that of c and its radius. Counting is quicker than taking,
+ * and mostly there are few triangles or far too many. */
 bool csg_polyhedron_normals(const csg_shape *shape, csg_vec3 c, double radius,
                             csg_shape_take_normal *take, void *user)
 {
+    enum { MOST = 256 };
+    size_t left = MOST + 1;
     const csg_polyhedron *solid = csg_polyhedron_of(shape);
     csg_vec3 at = csg_triangle_frame_enter(&solid->frame, c);
     if (csg_polyhedron_is_far(at))
         return false;
     double least = sqrt(csg_tree_nearest(&solid->tree, at, 0).squared);
     double reach = (least + 2 * radius * solid->frame.scale) * (1 + 0x1p-40) + CSG_POLYHEDRON_LEAST;
-    taking t = {solid, take, user, 0};
-    return csg_tree_within(&solid->tree, at, reach, take_triangle, &t);
+    taking t = {solid, take, user};
+    return csg_tree_within(&solid->tree, at, reach, count_triangle, &left) &&
+           csg_tree_within(&solid->tree, at, reach, take_triangle, &t);
 }
 
 /* ---- creases ----------------------------------------------------------------------------------
@@ -355,12 +362,6 @@ static bool survey_balls(bending *b, csg_box box)
 }
 
 /* ---- the whole -------------------------------------------------------------------------------- */
-
-static bool count_triangle(void *user, uint32_t place)
-{
-    size_t *left = user;
-    return --*left > 0;
-}
 
 static bool are_fewer(const csg_tree *tree, csg_box box, size_t fewest)
 {
