@@ -216,6 +216,7 @@ static void place_crossings(csg_slice_contours *c, size_t from, size_t to, float
     csg_edges *e = c->edges;
     e->count = (uint32_t)(to - from);
     e->end_distance = 0;
+    e->has_ends = false;
     for (size_t i = from; i < to; i++) {
         const csg_slice_crossing *p = &c->crossings[i];
         size_t k = i - from;
