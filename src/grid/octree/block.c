@@ -61,11 +61,12 @@ static void sample_whole(csg_block *block, csg_block_samples *samples, const csg
     sample_points(samples, kernel, tape, lattice, first, N, scratch, scratch_floats);
     for (int i = 0; i < CSG_BLOCK_POINTS; i++)
         samples->inside[i] = samples->f[i] >= 0;
-    memcpy(samples->values, samples->f, sizeof samples->values);
+    if (csg_block_keeps_ends(tape))
+        memcpy(samples->values, samples->f, sizeof samples->values);
 }
 
-/* What is known of a part, in the whole block. */
-static void take_part(csg_block_samples *samples, size_t begin, csg_cell_state state)
+/* What is known of a part, in the whole block; its values, if they are kept. */
+static void take_part(csg_block_samples *samples, size_t begin, csg_cell_state state, bool keeps)
 {
     enum { P = CSG_PART_EDGE + 1 };
     const float *f = samples->f;
@@ -75,7 +76,7 @@ static void take_part(csg_block_samples *samples, size_t begin, csg_cell_state s
             uint8_t *row = samples->inside + at;
             for (size_t i = 0; i < P; i++)
                 row[i] = state != CSG_CELL_SURFACE ? state == CSG_CELL_INSIDE : f[i] >= 0;
-            if (state == CSG_CELL_SURFACE)
+            if (keeps && state == CSG_CELL_SURFACE)
                 memcpy(samples->values + at, f, P * sizeof *f);
         }
 }
@@ -86,7 +87,8 @@ static void sample_parts(csg_block *block, csg_block_samples *samples, const csg
                          size_t scratch_floats)
 {
     enum { P = CSG_PART_EDGE + 1 };
-    for (int i = 0; i < CSG_BLOCK_POINTS; i++)
+    bool keeps = csg_block_keeps_ends(tape);
+    for (int i = 0; keeps && i < CSG_BLOCK_POINTS; i++)
         samples->values[i] = NAN;
     for (unsigned octant = 0; octant < CSG_OCTANTS; octant++) {
         const csg_block_part *part = &block->parts[octant];
@@ -103,7 +105,7 @@ static void sample_parts(csg_block *block, csg_block_samples *samples, const csg
         short_tape.count = part->node_count;
         if (part->state == CSG_CELL_SURFACE)
             sample_points(samples, kernel, &short_tape, lattice, first, P, scratch, scratch_floats);
-        take_part(samples, begin, part->state);
+        take_part(samples, begin, part->state, keeps);
     }
 }
 

@@ -33,8 +33,8 @@ typedef struct csg_block {
     const float *along; /* of vertices, in the order of csg_marching_roots: their places along their
                            edges' axes; NULL: not known, as after sampling */
     const float *slopes; /* gradients there, three floats each; NULL: not all known */
-    const float *ends;   /* values at the ends of crossed edges, point after point (csg_block_ends);
-                            NULL: not kept */
+    const float *ends;   /* values at the ends of crossed edges, point after point
+                            (csg_block_unpack_ends);   NULL: not kept */
     uint32_t vertex_count, triangle_count;
     uint32_t first_vertex;
     uint64_t first_triangle;
@@ -61,7 +61,8 @@ static inline void csg_block_choose_tape(const csg_block *block, const int cell[
 typedef struct csg_block_samples {
     float x[CSG_BLOCK_POINTS_PADDED], y[CSG_BLOCK_POINTS_PADDED], z[CSG_BLOCK_POINTS_PADDED];
     float f[CSG_BLOCK_POINTS_PADDED];
-    float values[CSG_BLOCK_POINTS]; /* of the whole block; NAN where nobody has asked */
+    float values[CSG_BLOCK_POINTS]; /* of the whole block, if it keeps ends; NAN where nobody has
+                                       asked */
     uint8_t inside[CSG_BLOCK_POINTS_PADDED];
     csg_scan *scan; /* looks at the values before they are forgotten; NULL = nobody does */
 } csg_block_samples;
@@ -72,8 +73,14 @@ bool csg_block_sample(csg_block *block, const csg_kernel *kernel, const csg_tape
                       const csg_lattice *lattice, const uint32_t at[3], csg_beads *beads,
                       csg_block_samples *samples, float *scratch, size_t scratch_floats);
 
+/* Whether blocks of a tape keep values: where each is a search, as of shapes. */
+static inline bool csg_block_keeps_ends(const csg_tape *tape)
+{
+    return tape->shapes != NULL;
+}
+
 /* Keeps the values at the ends of crossed edges, if all are known as the field has them: they are
- * asked for again where roots are looked for, and of shapes each is a search. False: out of memory.
+ * asked for again where roots are looked for. False: out of memory.
  */
 bool csg_block_keep_ends(csg_block *block, const csg_block_samples *samples, csg_arena *arena);
 /* Of a block that has them: values by points. */

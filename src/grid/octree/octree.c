@@ -235,7 +235,8 @@ static bool sample_block(walk *w, worker *self, const uint32_t at[3], const csg_
         return false;
     *block = self->candidate;
     self->blocks[self->block_count++] = block;
-    return !w->field->tape.shapes || csg_block_keep_ends(block, self->samples, &self->tapes[0]);
+    return !csg_block_keeps_ends(tape) ||
+           csg_block_keep_ends(block, self->samples, &self->tapes[0]);
 }
 
 static bool visit_octant(walk *w, worker *self, const csg_tape *parent, int octant,

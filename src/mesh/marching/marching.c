@@ -82,7 +82,10 @@ static void take_ends(const csg_block *block, const block_lines *lines, const ui
 {
     static const int STEP[3] = {1, N, N * N};
     float values[CSG_BLOCK_POINTS];
-    bool are_same = block->ends;
+    e->has_ends = false;
+    if (!block->ends)
+        return;
+    bool are_same = true;
     for (int axis = 0; axis < 3; axis++)
         for (int i = 0; i < E; i++)
             are_same = are_same &&
