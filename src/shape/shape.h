@@ -70,6 +70,8 @@ typedef struct csg_shape_operations {
                     void *user);
     void (*creases)(const csg_shape *shape, const csg_shape_crease *crease,
                     csg_shape_balls *balls); /* NULL: it does not tell */
+    bool (*beside)(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                   double at[3]); /* the same */
 } csg_shape_operations;
 
 /* The first member of the struct of each kind. */
@@ -126,6 +128,11 @@ static inline bool csg_shape_tells_creases(const csg_shape *shape)
  * jump by no more than `least` but at blunt edges that are left out. */
 void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
                        csg_shape_balls *balls);
+
+/* Three numbers: what is affine between a triangle's corners with these values there is nowhere more
+ * than turn (1 or -1) times the signed distance. False: none that is of use is known. */
+bool csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                      double at[3]);
 
 /* A stable hash of the geometry, for printing and comparing. */
 uint64_t csg_shape_hash(const csg_shape *shape);

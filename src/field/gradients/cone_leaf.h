@@ -5,6 +5,7 @@
 #ifndef CSG_FIELD_CONE_LEAF_H
 #define CSG_FIELD_CONE_LEAF_H
 
+#include "base/geometry.h"
 #include "field/gradients/bend_formula.h"
 #include "field/tape.h"
 #include "scene/primitives/cone_ball.h"
@@ -40,6 +41,11 @@ bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const f
  * csg_kink_values(). */
 bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                           double radius, csg_formula_pieces *out);
+
+/* Three numbers: what is affine between a triangle's corners with these values there is nowhere more
+ * than turn (1 or -1) times the leaf. False: it is no shape, or none of use is known. */
+bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
+                          const csg_vec3 triangle[3], double turn, double at[3]);
 
 /* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
  * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is

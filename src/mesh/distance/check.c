@@ -11,6 +11,7 @@
 #include "field/point.h"
 #include "grid/octree/octree.h"
 #include "mesh/distance/effort.h"
+#include "mesh/distance/minorant.h"
 #include "mesh/distance/slopes.h"
 #include "mesh/distance/steps.h"
 
@@ -220,6 +221,26 @@ static csg_touching find_touching(const proof *p, const settler *s,
     return csg_touching_find(p->remesh->probe.marching->kernel, &s->tape, near[0].c, radius);
 }
 
+/* Of pieces, whether all of each is inside a step against its normal, and outside a step along it.
+ */
+static void settle_by_minorants(const proof *p, const csg_touching *field,
+                                const piece *const *pieces, bool *is_settled, size_t count)
+{
+    csg_sided_triangle sides[2 * CSG_OCTANTS];
+    double least[2 * CSG_OCTANTS];
+    for (size_t i = 0; i < 2 * count; i++) {
+        const piece *one = pieces[i / 2];
+        double turn = i % 2 ? -1 : 1;
+        csg_vec3 step = csg_vec3_scale(one->normal, -turn * p->error);
+        for (int k = 0; k < 3; k++)
+            sides[i].at[k] = csg_vec3_add(one->at[k], step);
+        sides[i].turn = turn;
+    }
+    csg_minorants_find(p->remesh->probe.marching->kernel, field, sides, 2 * count, least);
+    for (size_t i = 0; i < count; i++)
+        is_settled[i] = least[2 * i] > slack_of(p) && least[2 * i + 1] > slack_of(p);
+}
+
 /* Up to eight pieces for which the settler's tape holds. */
 static void settle(const proof *p, settler *s, const piece *const *pieces, answer *const *answers,
                    size_t count)
@@ -228,7 +249,7 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
     look looks[CSG_OCTANTS]; /* not filled: gradients are large */
     csg_gradients_region near[CSG_OCTANTS] = {0};
     csg_gradients *found[CSG_OCTANTS] = {NULL};
-    bool is_known[CSG_OCTANTS];
+    bool is_known[CSG_OCTANTS], is_settled[CSG_OCTANTS];
     csg_steps steps[CSG_OCTANTS];
     answer *asking[CSG_OCTANTS];
     size_t asked = 0;
@@ -236,18 +257,32 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
         const csg_vec3 *at = pieces[i]->at;
         looks[i].d = disc_of(at);
         near[i] = (csg_gradients_region){{at[0], at[1], at[2]}, looks[i].d.center, p->error, 0};
-        found[i] = &looks[i].gradients;
     }
     const csg_touching field = find_touching(p, s, near, count);
-    csg_gradients_find_each(kernel, &field, near, count, s->scratch, p->scratch_floats, found,
-                            is_known);
+    settle_by_minorants(p, &field, pieces, is_settled, count);
+    s->pieces += count;
+    s->effort += count * csg_effort_of(&s->tape);
+    size_t left = 0, which[CSG_OCTANTS];
     for (size_t i = 0; i < count; i++) {
+        if (is_settled[i]) {
+            answers[i]->what = SETTLED;
+            continue;
+        }
+        near[left] = near[i];
+        looks[left].d = looks[i].d;
+        found[left] = &looks[left].gradients;
+        which[left++] = i;
+    }
+    csg_gradients_find_each(kernel, &field, near, left, s->scratch, p->scratch_floats, found,
+                            is_known);
+    for (size_t i = 0; i < left; i++) {
+        answer *a = answers[which[i]];
         bool asks;
         looks[i].is_known = is_known[i];
-        answers[i]->excess = INFINITY;
-        answers[i]->what = settle_by_cone(p, s, pieces[i], &looks[i], &steps[asked], &asks);
+        a->excess = INFINITY;
+        a->what = settle_by_cone(p, s, pieces[which[i]], &looks[i], &steps[asked], &asks);
         if (asks)
-            asking[asked++] = answers[i];
+            asking[asked++] = a;
     }
     if (asked)
         csg_steps_settle(kernel, &field, slack_of(p), s->scratch, p->scratch_floats, steps, asked);
@@ -255,13 +290,12 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
         asking[i]->what = steps[i].fails ? OPEN : SETTLED;
         asking[i]->excess = steps[i].excess;
     }
-    s->pieces += count;
-    s->effort += count * csg_effort_of(&s->tape);
-    for (size_t i = 0; i < count; i++) {
-        if (answers[i]->what == OPEN)
-            answers[i]->what = settle_otherwise(p, s, &field, pieces[i], &looks[i]);
+    for (size_t i = 0; i < left; i++) {
+        answer *a = answers[which[i]];
+        if (a->what == OPEN)
+            a->what = settle_otherwise(p, s, &field, pieces[which[i]], &looks[i]);
         double times = times_too_large(p, looks[i].d);
-        answers[i]->excess = fmin(answers[i]->excess, times * times);
+        a->excess = fmin(a->excess, times * times);
     }
 }
 
