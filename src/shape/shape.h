@@ -129,8 +129,9 @@ static inline bool csg_shape_tells_creases(const csg_shape *shape)
 void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
                        csg_shape_balls *balls);
 
-/* Three numbers: what is affine between a triangle's corners with these values there is nowhere more
- * than turn (1 or -1) times the signed distance. False: none that is of use is known. */
+/* An affine function that over a triangle is nowhere more than turn (1 or -1) times the signed
+ * distance: its values at the corners. at: first, turn times the distances there. False: none that
+ * is of use is known. */
 bool csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
                       double at[3]);
 

@@ -345,18 +345,19 @@ bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const
 }
 
 /* How far the image of a flat triangle is from that of its corners, whose middle is c, at most:
- * second derivatives, times half of the square of how far these are from it. INFINITY: not known.
- */
-static double find_curving(const csg_tape *tape, const csg_tape_node *leaf, const double c[3],
-                           double radius)
+ * second derivatives, times half of the square of how far these are from it. */
+double csg_cone_find_curving(const csg_tape *tape, const csg_tape_node *leaf, csg_vec3 c,
+                             double radius)
 {
     csg_cone_way way;
-    double at[3] = {c[0], c[1], c[2]}, rho = radius;
+    csg_cone_leaf l = {.rho = radius};
+    double at[3] = {c.x, c.y, c.z};
     if (!leaf->warp)
         return 0;
-    if (!csg_cone_warp(tape, leaf->warp, at, &rho, &way) || way.count != 1)
+    if (!csg_cone_warp(tape, leaf->warp, at, &l.rho, &way) || way.count != 1)
         return INFINITY;
-    return 0.5 * csg_norm3(way.turns[0].bend) * radius * radius;
+    place(&l, tape, leaf, at);
+    return 0.5 * l.norm * csg_norm3(way.turns[0].bend) * radius * radius;
 }
 
 /* A point in the leaf's own frame. False: it is where a warp is not regular. */
@@ -372,16 +373,13 @@ static bool place_point(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_n
     return true;
 }
 
-/* In the shape's own frame a triangle is one again, but for what a warp bends it by; distances are
- * what they are in the tape's, over sigma. */
+/* In the shape's own frame distances are what they are in the tape's, over sigma. */
 bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
                           const csg_vec3 triangle[3], double turn, double at[3])
 {
     const float *parameters = tape->parameters + leaf->parameters;
     double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
-    csg_vec3 own[3], sum = csg_vec3_add(triangle[0], csg_vec3_add(triangle[1], triangle[2]));
-    const double c[3] = {sum.x / 3, sum.y / 3, sum.z / 3};
-    double radius = 0;
+    csg_vec3 own[3];
     csg_cone_leaf l = {.rho = 0};
     if (leaf->op != CSG_OP_SHAPE)
         return false;
@@ -389,15 +387,13 @@ bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
         if (!place_point(&l, tape, leaf, triangle[k]))
             return false;
         own[k] = csg_vec3_make(l.q[0], l.q[1], l.q[2]);
-        csg_vec3 away = csg_vec3_sub(triangle[k], csg_vec3_make(c[0], c[1], c[2]));
-        radius = fmax(radius, csg_vec3_norm(away));
+        at[k] = (at[k] - turn * raise) / fabs(sigma);
     }
-    double curving = l.norm * find_curving(tape, leaf, c, radius);
     const csg_shape *shape = tape->shapes[(uint32_t)l.own[0]];
-    if (!(curving < INFINITY) || !csg_shape_beside(shape, own, sigma * turn > 0 ? 1 : -1, at))
+    if (!csg_shape_beside(shape, own, sigma * turn > 0 ? 1 : -1, at))
         return false;
     for (int k = 0; k < 3; k++)
-        at[k] = fabs(sigma) * at[k] + turn * raise - curving;
+        at[k] = fabs(sigma) * at[k] + turn * raise;
     return true;
 }
 

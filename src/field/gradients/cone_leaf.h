@@ -42,8 +42,14 @@ bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const f
 bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                           double radius, csg_formula_pieces *out);
 
-/* Three numbers: what is affine between a triangle's corners with these values there is nowhere more
- * than turn (1 or -1) times the leaf. False: it is no shape, or none of use is known. */
+/* What a flat triangle with the middle c, within `radius` of it, becomes in the leaf's own frame is
+ * within a distance of a flat one with the same corners: that, times sigma. INFINITY: not known. */
+double csg_cone_find_curving(const csg_tape *tape, const csg_tape_node *leaf, csg_vec3 c,
+                             double radius);
+
+/* As csg_shape_beside, of a leaf: `at` is turn (1 or -1) times its values at the corners of the
+ * triangle, and then what is nowhere more than turn times the leaf where the triangle is flat in
+ * its own frame. False: it is no shape, or nothing that is of use is known. */
 bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
                           const csg_vec3 triangle[3], double turn, double at[3]);
 

@@ -41,6 +41,12 @@ static double mean_of(const minorant *m)
     return (m->at[0] + m->at[1] + m->at[2]) / 3;
 }
 
+static void keep_higher(minorant *best, const minorant *other)
+{
+    if (least_of(other) > least_of(best))
+        *best = *other;
+}
+
 /* ---- leaves ------------------------------------------------------------------------------------
  */
 
@@ -72,17 +78,18 @@ static minorant minorant_of_leaf(const walk *w, const csg_tape_node *leaf)
         most = fmax(most, fabs(at[k]));
     }
     double doubt = (double)parameters[CSG_LEAF_SLACK] + 1e-6 * most;
-    minorant corners = lower(at, doubt);
-    if (!leaf->warp && csg_op_has(leaf->op, CSG_TRAIT_CONVEX)) {
-        if (turn * (double)parameters[CSG_LEAF_SIGMA] > 0)
-            return corners;
-        double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt;
-        return lower(at, doubt + 3 * fmax(below, 0));
+    double curving = csg_cone_find_curving(w->tape, leaf, w->middle, w->radius);
+    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX) && curving < INFINITY) {
+        double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt + curving;
+        bool is_concave = turn * (double)parameters[CSG_LEAF_SIGMA] > 0;
+        return lower(at, doubt + curving + (is_concave ? 0 : 3 * fmax(below, 0)));
     }
-    minorant beside;
-    if (csg_cone_find_beside(w->tape, leaf, w->triangle->at, turn, beside.at))
-        return lower(beside.at, doubt);
-    return lower(at, doubt + find_sag(w, leaf));
+    minorant best = lower(at, doubt + find_sag(w, leaf));
+    if (curving < INFINITY && csg_cone_find_beside(w->tape, leaf, w->triangle->at, turn, at)) {
+        const minorant beside = lower(at, doubt + curving);
+        keep_higher(&best, &beside);
+    }
+    return best;
 }
 
 /* ---- operators ---------------------------------------------------------------------------------
@@ -94,12 +101,6 @@ static minorant mixture_of(const minorant *a, const minorant *b, double share)
     for (int k = 0; k < CORNERS; k++)
         m.at[k] = share * a->at[k] + (1 - share) * b->at[k];
     return m;
-}
-
-static void keep_higher(minorant *best, const minorant *other)
-{
-    if (least_of(other) > least_of(best))
-        *best = *other;
 }
 
 /* The mixture whose least corner is highest: the least of three affine functions of the share is
@@ -147,9 +148,9 @@ static minorant fold_at_corners(const walk *w, const csg_tape_node *node, const 
     minorant out;
     double share;
     for (int k = 0; k < CORNERS; k++)
-        out.at[k] = -csg_slopes_fold(node, parameters[CSG_OPERATOR_N],
-                                     parameters[CSG_OPERATOR_SUPPORT], -m->at[k], -n->at[k],
-                                     &share);
+        out.at[k] =
+            -csg_slopes_fold(node, parameters[CSG_OPERATOR_N], parameters[CSG_OPERATOR_SUPPORT],
+                             -m->at[k], -n->at[k], &share);
     return out;
 }
 

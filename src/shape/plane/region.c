@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "shape/plane/region_beside.h"
 #include "shape/plane/region_sign.h"
 #include "shape/plane/region_tree.h"
 #include "shape/shape_kernel.h"
@@ -308,73 +309,20 @@ static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape
 
 /* ---- beside the outline ------------------------------------------------------------------- */
 
-typedef struct beside_walk {
-    const csg_segment_tree *tree;
-    csg_vec2 corner[3], middle;
-    double *at; /* of each corner */
-    uint32_t count;
-} beside_walk;
-
-/* The point of a segment that is nearest. */
-static csg_vec2 nearest_on(const csg_segment_tree *tree, uint32_t segment, csg_vec2 p)
-{
-    const csg_segment_leaf *leaf = &tree->leaves[segment / CSG_SEGMENT_LANES];
-    uint32_t k = segment % CSG_SEGMENT_LANES;
-    double along = csg_segment_locate(tree, segment, p.x, p.y).along;
-    along = fmin(fmax(along, 0), leaf->length[k]);
-    return (csg_vec2){leaf->ax[k] + along * leaf->ux[k], leaf->ay[k] + along * leaf->uy[k]};
-}
-
-static double distance_between(csg_vec2 a, csg_vec2 b)
-{
-    return sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
-}
-
-/* The distance from a segment is convex, so it is nowhere less than its tangent plane at the middle
- * says; and the least of affine functions is nowhere less than what it is at corners says. */
-static bool stay_below(void *user, uint32_t segment)
-{
-    enum { MOST = 256 };
-    beside_walk *w = user;
-    csg_vec2 foot = nearest_on(w->tree, segment, w->middle);
-    double distance = distance_between(foot, w->middle);
-    if (!(distance > 0) || ++w->count > MOST)
-        return false;
-    csg_vec2 slope = {(w->middle.x - foot.x) / distance, (w->middle.y - foot.y) / distance};
-    for (int k = 0; k < 3; k++) {
-        double x = w->corner[k].x - w->middle.x, y = w->corner[k].y - w->middle.y;
-        w->at[k] = fmin(w->at[k], distance + slope.x * x + slope.y * y);
-    }
-    return true;
-}
-
-/* On the side that is asked for, where no segment meets the triangle, the distance from all of
- * those that can be nearest. On the other side what is asked for is nowhere less than the distance
- * from one segment, turned around, which is concave, and holds across the outline as well. */
 static bool beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn, double at[3])
 {
     const region *r = (const region *)shape;
-    beside_walk w = {.tree = &r->tree, .at = at};
-    double radius = 0;
-    for (int k = 0; k < 3; k++)
-        w.corner[k] = (csg_vec2){triangle[k].x, triangle[k].y};
-    w.middle.x = (w.corner[0].x + w.corner[1].x + w.corner[2].x) / 3;
-    w.middle.y = (w.corner[0].y + w.corner[1].y + w.corner[2].y) / 3;
+    csg_vec2 corners[3], c = {0, 0};
     for (int k = 0; k < 3; k++) {
-        radius = fmax(radius, distance_between(w.corner[k], w.middle));
-        at[k] = INFINITY;
+        corners[k] = (csg_vec2){triangle[k].x, triangle[k].y};
+        c.x += corners[k].x / 3;
+        c.y += corners[k].y / 3;
     }
-    if (is_nowhere(r, w.middle.x, w.middle.y) || !(radius < 1e150))
+    if (is_nowhere(r, c.x, c.y))
         return false;
-    csg_segment_hit hit = csg_segment_nearest(&r->tree, w.middle.x, w.middle.y);
-    if (turn * value_at(r, hit, w.middle.x, w.middle.y) > 0) {
-        double reach = (sqrt(hit.squared) + 2 * radius) * (1 + 0x1p-40);
-        return csg_segment_within(&r->tree, w.middle.x, w.middle.y, reach, stay_below, &w) &&
-               at[0] > 0 && at[1] > 0 && at[2] > 0;
-    }
-    for (int k = 0; k < 3; k++)
-        at[k] = -distance_between(nearest_on(&r->tree, hit.segment, w.corner[k]), w.corner[k]);
-    return true;
+    csg_segment_hit hit = csg_segment_nearest(&r->tree, c.x, c.y);
+    return csg_region_beside(&r->tree, r->sides, corners, c, hit.segment,
+                             value_at(r, hit, c.x, c.y), turn, at);
 }
 
 static uint32_t narrow(const csg_shape *shape, const csg_shape_near *among,
