@@ -68,6 +68,9 @@ static minorant lower(const double at[CORNERS], double by)
     return (minorant){{at[0] - by, at[1] - by, at[2] - by}};
 }
 
+/* Of the triangle's radius: asking for gradients costs more. */
+static const double LITTLE = 1e-3;
+
 static minorant minorant_of_leaf(const walk *w, const csg_tape_node *leaf)
 {
     const float *parameters = w->tape->parameters + leaf->parameters;
@@ -79,10 +82,13 @@ static minorant minorant_of_leaf(const walk *w, const csg_tape_node *leaf)
     }
     double doubt = (double)parameters[CSG_LEAF_SLACK] + 1e-6 * most;
     double curving = csg_cone_find_curving(w->tape, leaf, w->middle, w->radius);
-    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX) && curving < INFINITY) {
+    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX)) {
         double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt + curving;
         bool is_concave = turn * (double)parameters[CSG_LEAF_SIGMA] > 0;
-        return lower(at, doubt + curving + (is_concave ? 0 : 3 * fmax(below, 0)));
+        double off = curving + (is_concave ? 0 : 3 * fmax(below, 0));
+        if (off > LITTLE * w->radius)
+            off = fmin(off, find_sag(w, leaf));
+        return lower(at, doubt + off);
     }
     minorant best = lower(at, doubt + find_sag(w, leaf));
     if (curving < INFINITY && csg_cone_find_beside(w->tape, leaf, w->triangle->at, turn, at)) {
