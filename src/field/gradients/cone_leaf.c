@@ -344,38 +344,28 @@ bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const
     return true;
 }
 
-/* How far the image of a flat triangle is from that of its corners, whose middle is c, at most:
- * second derivatives, times half of the square of how far these are from it. */
-double csg_cone_find_curving(const csg_tape *tape, const csg_tape_node *leaf, csg_vec3 c,
-                             double radius)
+double csg_cone_find_curving(const csg_tape *tape, uint32_t warp, csg_vec3 c, double radius)
 {
     csg_cone_way way;
-    csg_cone_leaf l = {.rho = radius};
-    double at[3] = {c.x, c.y, c.z};
-    if (!leaf->warp)
+    double at[3] = {c.x, c.y, c.z}, rho = radius;
+    if (!warp)
         return 0;
-    if (!csg_cone_warp(tape, leaf->warp, at, &l.rho, &way) || way.count != 1)
+    if (!csg_cone_warp(tape, warp, at, &rho, &way) || way.count != 1)
         return INFINITY;
-    place(&l, tape, leaf, at);
-    return 0.5 * l.norm * csg_norm3(way.turns[0].bend) * radius * radius;
+    return 0.5 * csg_norm3(way.turns[0].bend) * radius * radius;
 }
 
-/* A point in the leaf's own frame. False: it is where a warp is not regular. */
-static bool place_point(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_node *leaf,
-                        csg_vec3 p)
+double csg_cone_leaf_norm(const csg_tape *tape, const csg_tape_node *leaf)
 {
-    csg_cone_way way;
-    double at[3] = {p.x, p.y, p.z};
-    l->rho = 0;
-    if (leaf->warp && !csg_cone_warp(tape, leaf->warp, at, &l->rho, &way))
-        return false;
-    place(l, tape, leaf, at);
-    return true;
+    const float *parameters = tape->parameters + leaf->parameters;
+    double sigma = fabs((double)parameters[CSG_LEAF_SIGMA]);
+    return leaf->frame == CSG_FRAME_OFFSET ? sigma
+                                           : sigma * csg_cone_norm(parameters + CSG_LEAF_FRAME);
 }
 
 /* In the shape's own frame distances are what they are in the tape's, over sigma. */
-bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
-                          const csg_vec3 triangle[3], double turn, double at[3])
+bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf, const csg_vec3 below[3],
+                          double turn, double at[3])
 {
     const float *parameters = tape->parameters + leaf->parameters;
     double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
@@ -384,8 +374,8 @@ bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
     if (leaf->op != CSG_OP_SHAPE)
         return false;
     for (int k = 0; k < 3; k++) {
-        if (!place_point(&l, tape, leaf, triangle[k]))
-            return false;
+        const double c[3] = {below[k].x, below[k].y, below[k].z};
+        place(&l, tape, leaf, c);
         own[k] = csg_vec3_make(l.q[0], l.q[1], l.q[2]);
         at[k] = (at[k] - turn * raise) / fabs(sigma);
     }
@@ -394,6 +384,19 @@ bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
         return false;
     for (int k = 0; k < 3; k++)
         at[k] = fabs(sigma) * at[k] + turn * raise;
+    return true;
+}
+
+bool csg_cone_warp_corners(const csg_tape *tape, uint32_t warp, const csg_vec3 triangle[3],
+                           csg_vec3 out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        csg_cone_way way;
+        double at[3] = {triangle[k].x, triangle[k].y, triangle[k].z}, rho = 0;
+        if (warp && !csg_cone_warp(tape, warp, at, &rho, &way))
+            return false;
+        out[k] = csg_vec3_make(at[0], at[1], at[2]);
+    }
     return true;
 }
 

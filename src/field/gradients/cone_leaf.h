@@ -42,16 +42,19 @@ bool csg_cone_find_bend(const csg_tape *tape, const csg_tape_node *leaf, const f
 bool csg_cone_find_pieces(const csg_tape *tape, const csg_tape_node *leaf, const float c[3],
                           double radius, csg_formula_pieces *out);
 
-/* What a flat triangle with the middle c, within `radius` of it, becomes in the leaf's own frame is
- * within a distance of a flat one with the same corners: that, times sigma. INFINITY: not known. */
-double csg_cone_find_curving(const csg_tape *tape, const csg_tape_node *leaf, csg_vec3 c,
-                             double radius);
-
-/* As csg_shape_beside, of a leaf: `at` is turn (1 or -1) times its values at the corners of the
- * triangle, and then what is nowhere more than turn times the leaf where the triangle is flat in
- * its own frame. False: it is no shape, or nothing that is of use is known. */
-bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
-                          const csg_vec3 triangle[3], double turn, double at[3]);
+/* What a warp (0: none) makes of a flat triangle with the middle c, within `radius` of it, is so
+ * near to a flat one with the same corners. INFINITY: not known. */
+double csg_cone_find_curving(const csg_tape *tape, uint32_t warp, csg_vec3 c, double radius);
+/* What the leaf changes by at most over a length below its warp. */
+double csg_cone_leaf_norm(const csg_tape *tape, const csg_tape_node *leaf);
+/* Corners below a warp. False: one is where it is not regular. */
+bool csg_cone_warp_corners(const csg_tape *tape, uint32_t warp, const csg_vec3 triangle[3],
+                           csg_vec3 out[3]);
+/* As csg_shape_beside, of a leaf and a flat triangle below its warp: `at` is turn (1 or -1) times
+ * the leaf's values at the corners, and then what is nowhere more than turn times the leaf. False:
+ * it is no shape, or nothing that is of use is known. */
+bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf, const csg_vec3 below[3],
+                          double turn, double at[3]);
 
 /* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
  * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is

@@ -221,24 +221,26 @@ static csg_touching find_touching(const proof *p, const settler *s,
     return csg_touching_find(p->remesh->probe.marching->kernel, &s->tape, near[0].c, radius);
 }
 
-/* Of pieces, whether all of each is inside a step against its normal, and outside a step along it.
- */
-static void settle_by_minorants(const proof *p, const csg_touching *field,
-                                const piece *const *pieces, bool *is_settled, size_t count)
+/* Whether all of a piece is inside a step against its normal (turn 1), or outside a step along it
+ * (turn -1), of those of which it is asked. */
+static void keep_by_minorants(const proof *p, const csg_touching *field, const piece *const *pieces,
+                              double turn, bool *is_settled, size_t count)
 {
-    csg_sided_triangle sides[2 * CSG_OCTANTS];
-    double least[2 * CSG_OCTANTS];
-    for (size_t i = 0; i < 2 * count; i++) {
-        const piece *one = pieces[i / 2];
-        double turn = i % 2 ? -1 : 1;
-        csg_vec3 step = csg_vec3_scale(one->normal, -turn * p->error);
+    csg_sided_triangle moved[CSG_OCTANTS] = {0};
+    double least[CSG_OCTANTS];
+    size_t which[CSG_OCTANTS], asked = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_settled[i])
+            continue;
+        csg_vec3 step = csg_vec3_scale(pieces[i]->normal, -turn * p->error);
         for (int k = 0; k < 3; k++)
-            sides[i].at[k] = csg_vec3_add(one->at[k], step);
-        sides[i].turn = turn;
+            moved[asked].at[k] = csg_vec3_add(pieces[i]->at[k], step);
+        moved[asked].turn = turn;
+        which[asked++] = i;
     }
-    csg_minorants_find(p->remesh->probe.marching->kernel, field, sides, 2 * count, least);
-    for (size_t i = 0; i < count; i++)
-        is_settled[i] = least[2 * i] > slack_of(p) && least[2 * i + 1] > slack_of(p);
+    csg_minorants_find(p->remesh->probe.marching->kernel, field, moved, asked, least);
+    for (size_t i = 0; i < asked; i++)
+        is_settled[which[i]] = least[i] > slack_of(p);
 }
 
 /* Up to eight pieces for which the settler's tape holds. */
@@ -256,10 +258,12 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
     for (size_t i = 0; i < count; i++) {
         const csg_vec3 *at = pieces[i]->at;
         looks[i].d = disc_of(at);
+        is_settled[i] = true; /* as far as is known */
         near[i] = (csg_gradients_region){{at[0], at[1], at[2]}, looks[i].d.center, p->error, 0};
     }
     const csg_touching field = find_touching(p, s, near, count);
-    settle_by_minorants(p, &field, pieces, is_settled, count);
+    keep_by_minorants(p, &field, pieces, 1, is_settled, count);
+    keep_by_minorants(p, &field, pieces, -1, is_settled, count);
     s->pieces += count;
     s->effort += count * csg_effort_of(&s->tape);
     size_t left = 0, which[CSG_OCTANTS];

@@ -24,7 +24,11 @@ typedef struct walk {
     const csg_tape *tape;
     const csg_sided_triangle *triangle;
     csg_vec3 middle;
-    double radius;       /* of the ball around it that holds the triangle */
+    double radius;     /* of the ball around it that holds the triangle */
+    uint32_t warp;     /* the last one asked about: most leaves have the same */
+    csg_vec3 below[3]; /* the corners below it */
+    double curving;
+    bool is_warped;      /* false, and INFINITY: not known */
     const float *values; /* of node number i from i times the stride on, at the places */
     size_t stride;
     minorant stack[CSG_SLOPES_NODES];
@@ -68,30 +72,43 @@ static minorant lower(const double at[CORNERS], double by)
     return (minorant){{at[0] - by, at[1] - by, at[2] - by}};
 }
 
-/* Of the triangle's radius: asking for gradients costs more. */
-static const double LITTLE = 1e-3;
-
-static minorant minorant_of_leaf(const walk *w, const csg_tape_node *leaf)
+static void find_below(walk *w, uint32_t warp)
 {
-    const float *parameters = w->tape->parameters + leaf->parameters;
+    if (w->warp == warp)
+        return;
+    w->warp = warp;
+    w->curving = csg_cone_find_curving(w->tape, warp, w->middle, w->radius);
+    w->is_warped = csg_cone_warp_corners(w->tape, warp, w->triangle->at, w->below);
+}
+
+/* Of a convex primitive. Gradients are asked where that may tell more. */
+static double off_of_convex(const walk *w, const csg_tape_node *leaf, const double at[PLACES],
+                            double doubt, double curving)
+{
+    static const double LITTLE = 1e-3; /* of the radius */
+    double sigma = (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SIGMA];
+    double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt + curving;
+    double off = curving + (w->triangle->turn * sigma > 0 ? 0 : 3 * fmax(below, 0));
+    return off > LITTLE * w->radius ? fmin(off, find_sag(w, leaf)) : off;
+}
+
+static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
+{
     const float *values = w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
     double turn = w->triangle->turn, at[PLACES], most = 0;
     for (uint32_t k = 0; k < PLACES; k++) {
         at[k] = turn * (double)values[k];
         most = fmax(most, fabs(at[k]));
     }
-    double doubt = (double)parameters[CSG_LEAF_SLACK] + 1e-6 * most;
-    double curving = csg_cone_find_curving(w->tape, leaf, w->middle, w->radius);
-    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX)) {
-        double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt + curving;
-        bool is_concave = turn * (double)parameters[CSG_LEAF_SIGMA] > 0;
-        double off = curving + (is_concave ? 0 : 3 * fmax(below, 0));
-        if (off > LITTLE * w->radius)
-            off = fmin(off, find_sag(w, leaf));
-        return lower(at, doubt + off);
-    }
+    double slack = (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    double doubt = slack + 1e-6 * most, curving = 0;
+    find_below(w, leaf->warp);
+    if (leaf->warp)
+        curving = csg_cone_leaf_norm(w->tape, leaf) * w->curving;
+    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX))
+        return lower(at, doubt + off_of_convex(w, leaf, at, doubt, curving));
     minorant best = lower(at, doubt + find_sag(w, leaf));
-    if (curving < INFINITY && csg_cone_find_beside(w->tape, leaf, w->triangle->at, turn, at)) {
+    if (w->is_warped && csg_cone_find_beside(w->tape, leaf, w->below, turn, at)) {
         const minorant beside = lower(at, doubt + curving);
         keep_higher(&best, &beside);
     }
@@ -314,8 +331,8 @@ static csg_vec3 middle_of(const csg_vec3 at[3])
 void csg_minorants_find(const csg_kernel *kernel, const csg_touching *field,
                         const csg_sided_triangle *triangles, size_t count, double *least)
 {
-    float values[CSG_SLOPES_NODES * PLACES * CSG_SIDED_MOST];
-    float x[PLACES * CSG_SIDED_MOST], y[PLACES * CSG_SIDED_MOST], z[PLACES * CSG_SIDED_MOST];
+    float values[CSG_SLOPES_NODES * PLACES * CSG_OCTANTS];
+    float x[PLACES * CSG_OCTANTS], y[PLACES * CSG_OCTANTS], z[PLACES * CSG_OCTANTS];
     size_t all = count * PLACES;
     walk w; /* not filled: its stack is large */
     for (size_t i = 0; i < count; i++)
@@ -339,6 +356,7 @@ void csg_minorants_find(const csg_kernel *kernel, const csg_touching *field,
         w.values = values + i * PLACES;
         w.middle = middle_of(triangles[i].at);
         w.radius = 0;
+        w.warp = UINT32_MAX;
         for (int k = 0; k < CORNERS; k++)
             w.radius = fmax(w.radius, csg_vec3_norm(csg_vec3_sub(triangles[i].at[k], w.middle)));
         least[i] = find_least(&w, field);

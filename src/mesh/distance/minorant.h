@@ -27,9 +27,7 @@ typedef struct csg_sided_triangle {
     double turn; /* 1: is it inside? -1: outside? */
 } csg_sided_triangle;
 
-enum { CSG_SIDED_MOST = 2 * CSG_OCTANTS };
-
-/* A lower bound of turn times the field over each of up to CSG_SIDED_MOST triangles in which the
+/* A lower bound of turn times the field over each of up to CSG_OCTANTS triangles in which the
  * tape holds, but for rounding of places; -INFINITY: not known. */
 void csg_minorants_find(const csg_kernel *kernel, const csg_touching *field,
                         const csg_sided_triangle *triangles, size_t count, double *least);
