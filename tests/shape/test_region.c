@@ -342,6 +342,63 @@ static void cells_have_what_matters_there(void **state)
     assert_true(checked > ROUNDS(15000));
 }
 
+/* What csg_shape_beside says of a triangle, tried at random places of it. Returns whether it says
+ * that all of it is on the side that is asked for. */
+static bool check_beside(csg_vec2 c, double radius, double turn)
+{
+    csg_vec3 v[3];
+    double at[3], corners[3];
+    for (int k = 0; k < 3; k++) {
+        v[k] = csg_vec3_make(c.x + csg_random_uniform(&dice, -radius, radius),
+                             c.y + csg_random_uniform(&dice, -radius, radius), 0);
+        at[k] = turn * value_of(v[k].x, v[k].y);
+        corners[k] = at[k];
+    }
+    if (!csg_shape_beside(region, v, turn, at))
+        return false;
+    for (int k = 0; k < 3; k++)
+        assert_true(at[k] <= corners[k] + 1e-12);
+    for (int i = 0; i < 40; i++) {
+        double s = csg_random_uniform(&dice, 0, 1), t = csg_random_uniform(&dice, 0, 1 - s);
+        t = i % 4 ? t : 1 - s;
+        double x = s * v[0].x + t * v[1].x + (1 - s - t) * v[2].x;
+        double y = s * v[0].y + t * v[1].y + (1 - s - t) * v[2].y;
+        double said = s * at[0] + t * at[1] + (1 - s - t) * at[2], is = turn * value_of(x, y);
+        if (is < said - 1e-12)
+            fail_msg("%g, not %g or more, at (%g, %g), of a triangle within %g", is, said, x, y,
+                     radius);
+    }
+    return at[0] > 0 && at[1] > 0 && at[2] > 0;
+}
+
+/* Near outlines of few corners and of many, that cross themselves, that turn to one side. */
+static void triangles_beside(void **state)
+{
+    uint32_t told = 0;
+    for (int round = 0; round < ROUNDS(40); round++) {
+        csg_outline_release(&outline);
+        int corners = 3 + round % 20;
+        if (round % 4 == 3)
+            add_scribble(&outline, &dice, 1, corners);
+        else
+            add_star(&outline, &dice, (csg_vec2){0, 0}, round % 4 ? 0.97 : 0.3, 1, corners, false);
+        if (round % 4 == 2)
+            add_star(&outline, &dice, (csg_vec2){0, 0}, 0.2, 0.21, corners, true);
+        make_region();
+        for (int i = 0; i < 500; i++) {
+            csg_vec2 p = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];
+            csg_vec2 q = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];
+            double radius = exp(csg_random_uniform(&dice, -7, -0.5)), off = 2 * radius;
+            double share = i % 3 ? 0 : csg_random_uniform(&dice, 0, 1);
+            p.x += share * (q.x - p.x) + csg_random_uniform(&dice, -off, off);
+            p.y += share * (q.y - p.y) + csg_random_uniform(&dice, -off, off);
+            told += check_beside(p, radius, i % 2 ? 1 : -1);
+        }
+    }
+    print_message("%u triangles on one side\n", told);
+    assert_true(told > ROUNDS(40) * 100);
+}
+
 static void shapes_are_counted_and_named(void **state)
 {
     make_text_like(500);
@@ -445,6 +502,7 @@ int main(void)
         TEST(differences_stay_below_distances),
         TEST(batches_are_their_points),
         TEST(cells_have_what_matters_there),
+        TEST(triangles_beside),
         TEST(shapes_are_counted_and_named),
         TEST(nothing_and_nonsense),
         TEST(every_allocation_may_fail),
