@@ -69,9 +69,12 @@ uint32_t csg_shape_narrow(const csg_shape *shape, const csg_shape_near *among,
     return shape->operations->narrow(shape, among, cell, items);
 }
 
-bool csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn, double at[3])
+csg_beside csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                            double at[3])
 {
-    return shape->operations->beside && shape->operations->beside(shape, triangle, turn, at);
+    if (!shape->operations->beside)
+        return CSG_BESIDE_UNKNOWN;
+    return shape->operations->beside(shape, triangle, turn, at);
 }
 
 uint64_t csg_shape_hash(const csg_shape *shape)

@@ -53,6 +53,10 @@ typedef struct csg_shape_balls {
     size_t fewest; /* with fewer facets around all of them none is looked at: all may crease */
 } csg_shape_balls;
 
+/* What is known of a triangle beside a surface (csg_shape_beside): nothing, what may be far below
+ * where it crosses the surface, or what is near to the truth. */
+typedef enum csg_beside { CSG_BESIDE_UNKNOWN, CSG_BESIDE_WEAKLY, CSG_BESIDE_CLOSELY } csg_beside;
+
 /* What each kind brings along. */
 typedef struct csg_shape_operations {
     void (*destroy)(csg_shape *shape);
@@ -70,8 +74,8 @@ typedef struct csg_shape_operations {
                     void *user);
     void (*creases)(const csg_shape *shape, const csg_shape_crease *crease,
                     csg_shape_balls *balls); /* NULL: it does not tell */
-    bool (*beside)(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
-                   double at[3]); /* the same */
+    csg_beside (*beside)(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                         double at[3]); /* the same */
 } csg_shape_operations;
 
 /* The first member of the struct of each kind. */
@@ -130,10 +134,9 @@ void csg_shape_creases(const csg_shape *shape, const csg_shape_crease *crease,
                        csg_shape_balls *balls);
 
 /* An affine function that over a triangle is nowhere more than turn (1 or -1) times the signed
- * distance: its values at the corners. at: first, turn times the distances there. False: none that
- * is of use is known. */
-bool csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
-                      double at[3]);
+ * distance: its values at the corners. at: first, turn times the distances there. */
+csg_beside csg_shape_beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                            double at[3]);
 
 /* A stable hash of the geometry, for printing and comparing. */
 uint64_t csg_shape_hash(const csg_shape *shape);

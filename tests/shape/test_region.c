@@ -354,7 +354,7 @@ static bool check_beside(csg_vec2 c, double radius, double turn)
         at[k] = turn * value_of(v[k].x, v[k].y);
         corners[k] = at[k];
     }
-    if (!csg_shape_beside(region, v, turn, at))
+    if (csg_shape_beside(region, v, turn, at) == CSG_BESIDE_UNKNOWN)
         return false;
     for (int k = 0; k < 3; k++)
         assert_true(at[k] <= corners[k] + 1e-12);

@@ -364,15 +364,15 @@ double csg_cone_leaf_norm(const csg_tape *tape, const csg_tape_node *leaf)
 }
 
 /* In the shape's own frame distances are what they are in the tape's, over sigma. */
-bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf, const csg_vec3 below[3],
-                          double turn, double at[3])
+csg_beside csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
+                                const csg_vec3 below[3], double turn, double at[3])
 {
     const float *parameters = tape->parameters + leaf->parameters;
     double sigma = (double)parameters[CSG_LEAF_SIGMA], raise = (double)parameters[CSG_LEAF_RAISE];
     csg_vec3 own[3];
     csg_cone_leaf l = {.rho = 0};
     if (leaf->op != CSG_OP_SHAPE)
-        return false;
+        return CSG_BESIDE_UNKNOWN;
     for (int k = 0; k < 3; k++) {
         const double c[3] = {below[k].x, below[k].y, below[k].z};
         place(&l, tape, leaf, c);
@@ -380,11 +380,10 @@ bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf, const
         at[k] = (at[k] - turn * raise) / fabs(sigma);
     }
     const csg_shape *shape = tape->shapes[(uint32_t)l.own[0]];
-    if (!csg_shape_beside(shape, own, sigma * turn > 0 ? 1 : -1, at))
-        return false;
+    csg_beside known = csg_shape_beside(shape, own, sigma * turn > 0 ? 1 : -1, at);
     for (int k = 0; k < 3; k++)
         at[k] = fabs(sigma) * at[k] + turn * raise;
-    return true;
+    return known;
 }
 
 bool csg_cone_warp_corners(const csg_tape *tape, uint32_t warp, const csg_vec3 triangle[3],

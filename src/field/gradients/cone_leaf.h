@@ -51,10 +51,9 @@ double csg_cone_leaf_norm(const csg_tape *tape, const csg_tape_node *leaf);
 bool csg_cone_warp_corners(const csg_tape *tape, uint32_t warp, const csg_vec3 triangle[3],
                            csg_vec3 out[3]);
 /* As csg_shape_beside, of a leaf and a flat triangle below its warp: `at` is turn (1 or -1) times
- * the leaf's values at the corners, and then what is nowhere more than turn times the leaf. False:
- * it is no shape, or nothing that is of use is known. */
-bool csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf, const csg_vec3 below[3],
-                          double turn, double at[3]);
+ * the leaf's values at the corners, and then what is nowhere more than turn times the leaf. */
+csg_beside csg_cone_find_beside(const csg_tape *tape, const csg_tape_node *leaf,
+                                const csg_vec3 below[3], double turn, double at[3]);
 
 /* Where faces meet: the leaf's solid in the ball is the intersection of theirs, or of what is
  * turned around the union; one face a ball, with its values in the tape's frame at c. False: it is

@@ -92,6 +92,9 @@ static double off_of_convex(const walk *w, const csg_tape_node *leaf, const doub
     return off > LITTLE * w->radius ? fmin(off, find_sag(w, leaf)) : off;
 }
 
+/* Of the radius: it is no use to know more. */
+static const double LITTLE_CURVING = 0.02;
+
 static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
 {
     const float *values = w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
@@ -107,11 +110,17 @@ static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
         curving = csg_cone_leaf_norm(w->tape, leaf) * w->curving;
     if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX))
         return lower(at, doubt + off_of_convex(w, leaf, at, doubt, curving));
-    minorant best = lower(at, doubt + find_sag(w, leaf));
-    if (w->is_warped && csg_cone_find_beside(w->tape, leaf, w->below, turn, at)) {
-        const minorant beside = lower(at, doubt + curving);
+    minorant corners = lower(at, doubt), beside = {{0, 0, 0}};
+    csg_beside known = CSG_BESIDE_UNKNOWN;
+    if (w->is_warped)
+        known = csg_cone_find_beside(w->tape, leaf, w->below, turn, at);
+    if (known != CSG_BESIDE_UNKNOWN)
+        beside = lower(at, doubt + curving);
+    if (known == CSG_BESIDE_CLOSELY && curving <= LITTLE_CURVING * w->radius)
+        return beside;
+    minorant best = lower(corners.at, find_sag(w, leaf));
+    if (known != CSG_BESIDE_UNKNOWN)
         keep_higher(&best, &beside);
-    }
     return best;
 }
 

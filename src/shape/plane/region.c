@@ -309,7 +309,8 @@ static bool normals(const csg_shape *shape, csg_vec3 c, double radius, csg_shape
 
 /* ---- beside the outline ------------------------------------------------------------------- */
 
-static bool beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn, double at[3])
+static csg_beside beside(const csg_shape *shape, const csg_vec3 triangle[3], double turn,
+                         double at[3])
 {
     const region *r = (const region *)shape;
     csg_vec2 corners[3], c = {0, 0};
@@ -319,7 +320,7 @@ static bool beside(const csg_shape *shape, const csg_vec3 triangle[3], double tu
         c.y += corners[k].y / 3;
     }
     if (is_nowhere(r, c.x, c.y))
-        return false;
+        return CSG_BESIDE_UNKNOWN;
     csg_segment_hit hit = csg_segment_nearest(&r->tree, c.x, c.y);
     return csg_region_beside(&r->tree, r->sides, corners, c, hit.segment,
                              value_at(r, hit, c.x, c.y), turn, at);

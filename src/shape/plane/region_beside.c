@@ -155,9 +155,9 @@ static void stay_behind(const beside_walk *w, uint32_t nearest, double at[CORNER
         at[k] = -length_of(way_from(w->tree, nearest, w->corners[k]));
 }
 
-bool csg_region_beside(const csg_segment_tree *tree, const csg_segment_sides *sides,
-                       const csg_vec2 corners[3], csg_vec2 c, uint32_t nearest, double value,
-                       double turn, double at[3])
+csg_beside csg_region_beside(const csg_segment_tree *tree, const csg_segment_sides *sides,
+                             const csg_vec2 corners[3], csg_vec2 c, uint32_t nearest, double value,
+                             double turn, double at[3])
 {
     beside_walk w = {.tree = tree, .sides = sides, .corners = corners, .c = c};
     double passed[CORNERS];
@@ -168,12 +168,12 @@ bool csg_region_beside(const csg_segment_tree *tree, const csg_segment_sides *si
     if (are_all && turn * value > 0 && pass_segments(&w, passed)) {
         for (int k = 0; k < CORNERS; k++)
             at[k] = passed[k];
-        return true;
+        return CSG_BESIDE_CLOSELY;
     }
     if (are_all && go_along_chain(&w, nearest, !(turn * value > 0), turn, at))
-        return true;
+        return CSG_BESIDE_CLOSELY;
     if (turn * value > 0)
-        return false;
+        return CSG_BESIDE_UNKNOWN;
     stay_behind(&w, nearest, at);
-    return true;
+    return CSG_BESIDE_WEAKLY;
 }
