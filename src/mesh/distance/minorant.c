@@ -81,19 +81,21 @@ static void find_below(walk *w, uint32_t warp)
     w->is_warped = csg_cone_warp_corners(w->tape, warp, w->triangle->at, w->below);
 }
 
+/* Of the radius: it is no use to know more. */
+static const double LITTLE_CURVING = 0.02;
+
 /* Of a convex primitive. Gradients are asked where that may tell more. */
 static double off_of_convex(const walk *w, const csg_tape_node *leaf, const double at[PLACES],
                             double doubt, double curving)
 {
     static const double LITTLE = 1e-3; /* of the radius */
     double sigma = (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SIGMA];
+    if (w->triangle->turn * sigma > 0)
+        return curving <= LITTLE_CURVING * w->radius ? curving : fmin(curving, find_sag(w, leaf));
     double below = (at[0] + at[1] + at[2]) / 3 - at[CORNERS] + 2 * doubt + curving;
-    double off = curving + (w->triangle->turn * sigma > 0 ? 0 : 3 * fmax(below, 0));
+    double off = curving + 3 * fmax(below, 0);
     return off > LITTLE * w->radius ? fmin(off, find_sag(w, leaf)) : off;
 }
-
-/* Of the radius: it is no use to know more. */
-static const double LITTLE_CURVING = 0.02;
 
 static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
 {
