@@ -384,6 +384,10 @@ static void triangles_beside(void **state)
             add_star(&outline, &dice, (csg_vec2){0, 0}, round % 4 ? 0.97 : 0.3, 1, corners, false);
         if (round % 4 == 2)
             add_star(&outline, &dice, (csg_vec2){0, 0}, 0.2, 0.21, corners, true);
+        for (int i = 0; i < 12 && round % 4 == 1; i++) { /* small ones beside long segments */
+            csg_vec2 c = {csg_random_uniform(&dice, -0.8, 0.8), csg_random_uniform(&dice, -1, 1)};
+            add_star(&outline, &dice, c, 0.005, 0.01, 4, i % 2);
+        }
         make_region();
         for (int i = 0; i < 500; i++) {
             csg_vec2 p = outline.points[csg_random_below(&dice, (uint32_t)outline.point_count)];

@@ -97,25 +97,14 @@ static double off_of_convex(const walk *w, const csg_tape_node *leaf, const doub
     return off > LITTLE * w->radius ? fmin(off, find_sag(w, leaf)) : off;
 }
 
-static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
+/* Of any other. */
+static minorant minorant_of_others(walk *w, const csg_tape_node *leaf, double at[CORNERS],
+                                   double doubt, double curving)
 {
-    const float *values = w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
-    double turn = w->triangle->turn, at[PLACES], most = 0;
-    for (uint32_t k = 0; k < PLACES; k++) {
-        at[k] = turn * (double)values[k];
-        most = fmax(most, fabs(at[k]));
-    }
-    double slack = (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
-    double doubt = slack + 1e-6 * most, curving = 0;
-    find_below(w, leaf->warp);
-    if (leaf->warp)
-        curving = csg_cone_leaf_norm(w->tape, leaf) * w->curving;
-    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX))
-        return lower(at, doubt + off_of_convex(w, leaf, at, doubt, curving));
     minorant corners = lower(at, doubt), beside = {{0, 0, 0}};
     csg_beside known = CSG_BESIDE_UNKNOWN;
     if (w->is_warped)
-        known = csg_cone_find_beside(w->tape, leaf, w->below, turn, at);
+        known = csg_cone_find_beside(w->tape, leaf, w->below, w->triangle->turn, at);
     if (known != CSG_BESIDE_UNKNOWN)
         beside = lower(at, doubt + curving);
     if (known == CSG_BESIDE_CLOSELY && curving <= LITTLE_CURVING * w->radius)
@@ -124,6 +113,30 @@ static minorant minorant_of_leaf(walk *w, const csg_tape_node *leaf)
     if (known != CSG_BESIDE_UNKNOWN)
         keep_higher(&best, &beside);
     return best;
+}
+
+/* False: its values are no numbers. */
+static bool find_leaf(walk *w, const csg_tape_node *leaf, minorant *out)
+{
+    const float *values = w->values + (size_t)(leaf - w->tape->nodes) * w->stride;
+    double turn = w->triangle->turn, at[PLACES], most = 0;
+    for (uint32_t k = 0; k < PLACES; k++) {
+        at[k] = turn * (double)values[k];
+        if (!(fabs(at[k]) < INFINITY))
+            return false;
+        most = fmax(most, fabs(at[k]));
+    }
+    double slack = (double)w->tape->parameters[leaf->parameters + CSG_LEAF_SLACK];
+    double doubt = slack + 1e-6 * most, curving = 0;
+    find_below(w, leaf->warp);
+    if (leaf->warp)
+        curving = csg_cone_leaf_norm(w->tape, leaf) * w->curving;
+    if (csg_op_has(leaf->op, CSG_TRAIT_CONVEX)) {
+        *out = lower(at, doubt + off_of_convex(w, leaf, at, doubt, curving));
+        return true;
+    }
+    *out = minorant_of_others(w, leaf, at, doubt, curving);
+    return true;
 }
 
 /* ---- operators ---------------------------------------------------------------------------------
@@ -163,7 +176,7 @@ static minorant smaller_of(const minorant *a, const minorant *b)
     return m;
 }
 
-/* Where operands have the values a and b; slack: rounding. */
+/* Where operands have the values a and b. */
 static minorant tangent_of_fold(const walk *w, const csg_tape_node *node, const minorant *m,
                                 const minorant *n, double a, double b)
 {
@@ -299,13 +312,14 @@ static bool walk_nodes(walk *w, uint32_t first, uint32_t count)
 {
     for (uint32_t i = first; i < first + count; i++) {
         const csg_tape_node *node = &w->tape->nodes[i];
-        if (csg_op_is_leaf(node->op))
-            w->stack[w->top++] = minorant_of_leaf(w, node);
-        else if (csg_op_is_round(node->op))
+        bool known = node->op == CSG_OP_UNION || node->op == CSG_OP_INTERSECTION;
+        if (csg_op_is_leaf(node->op)) {
+            known = find_leaf(w, node, &w->stack[w->top++]);
+        } else if (csg_op_is_round(node->op)) {
             join_round(w, node);
-        else if (node->op != CSG_OP_UNION && node->op != CSG_OP_INTERSECTION)
-            return false;
-        if (node->join && !join(w, node))
+            known = true;
+        }
+        if (!known || (node->join && !join(w, node)))
             return false;
     }
     return true;

@@ -91,10 +91,10 @@ static bool has(const beside_walk *w, uint32_t segment)
     return false;
 }
 
-/* The segments are a chain with the solid on its left, that turns by no more than half a turn, and
- * to one side only: all of them to the left (1) or to the right (-1), or 0. Beside it the solid is
- * a convex set, or what is left by one: the chain ends outside of the ball in which its segments
- * are looked for, and straight ends go on outside of it. */
+/* Whether the segments are a chain with the solid on its left, that turns by no more than half a
+ * turn, and to one side only: all of them to the left (1) or to the right (-1), or 0. Beside it the
+ * solid is a convex set, or what is left by one: the chain ends outside of the ball in which its
+ * segments are looked for, and straight ends go on outside of it. */
 static int turn_of_chain(const beside_walk *w)
 {
     uint32_t first = w->count;
@@ -114,6 +114,8 @@ static int turn_of_chain(const beside_walk *w)
     bool left = true, right = true;
     for (uint32_t i = 1; i < w->count; i++) {
         segment = w->tree->ends[segment].following;
+        if (!has(w, segment)) /* others are whole loops */
+            return 0;
         csg_vec2 u = direction_of(w->tree, segment);
         double bend = last.x * u.y - last.y * u.x, sum = begin.x * u.y - begin.y * u.x;
         bool goes_on = last.x * u.x + last.y * u.y > 0;
