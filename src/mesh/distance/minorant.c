@@ -223,40 +223,59 @@ static double spread_of(const minorant *a, const minorant *b)
     return most;
 }
 
-/* False: nothing is known. */
-static bool join(walk *w, const csg_tape_node *node)
+/* No blend that folds. */
+static bool has_edge(uint8_t blend)
+{
+    return csg_blend_is_sharp(blend) || csg_blend_is_orthogonal(blend);
+}
+
+/* Of a union's values: tangent planes. What is orthogonal is nowhere less than sharp. */
+static minorant join_convex(const walk *w, const csg_tape_node *node, const minorant *a,
+                            const minorant *b)
+{
+    if (has_edge(node->join_blend))
+        return larger_of(a, b);
+    minorant best = tangent_of_fold(w, node, a, b, mean_of(a), mean_of(b));
+    uint32_t k = lowest_corner(&best);
+    minorant there = tangent_of_fold(w, node, a, b, a->at[k], b->at[k]);
+    keep_higher(&best, &there);
+    return best;
+}
+
+/* An intersection of operands at right angles, behind which what is `beyond` is rounded. */
+static minorant orthogonal_at_corners(const minorant *a, const minorant *b, double beyond)
+{
+    minorant out;
+    for (int k = 0; k < CORNERS; k++) {
+        double u = -a->at[k] - beyond, v = -b->at[k] - beyond;
+        out.at[k] = u > 0 && v > 0 ? -beyond - sqrt(u * u + v * v) : fmin(a->at[k], b->at[k]);
+    }
+    return out;
+}
+
+/* Of an intersection's values: those at the corners. */
+static minorant join_concave(const walk *w, const csg_tape_node *node, const minorant *a,
+                             const minorant *b)
+{
+    double n = (double)w->tape->parameters[node->join_parameters + CSG_OPERATOR_N];
+    if (csg_blend_is_orthogonal(node->join_blend))
+        return orthogonal_at_corners(a, b, -w->triangle->turn * n);
+    return has_edge(node->join_blend) ? smaller_of(a, b) : fold_at_corners(w, node, a, b);
+}
+
+/* Of the two operands on top. False: nothing is known. */
+static bool join_operands(walk *w, const csg_tape_node *node)
 {
     static const double ROUNDING = 1e-5;
+    uint8_t blend = node->join_blend;
     minorant *a = &w->stack[w->top - 2];
     const minorant b = w->stack[--w->top];
-    bool is_convex = is_convex_here(w, node->join == CSG_JOIN_UNION);
-    if (csg_blend_is_sharp(node->join_blend) ||
-        (is_convex && csg_blend_is_orthogonal(node->join_blend))) {
-        *a = is_convex ? larger_of(a, &b) : smaller_of(a, &b);
-        return true;
-    }
-    if (csg_blend_is_orthogonal(node->join_blend)) {
-        double n = -w->triangle->turn *
-                   (double)w->tape->parameters[node->join_parameters + CSG_OPERATOR_N];
-        for (int k = 0; k < CORNERS; k++) {
-            double u = -a->at[k] - n, v = -b.at[k] - n;
-            a->at[k] = u > 0 && v > 0 ? -n - sqrt(u * u + v * v) : fmin(a->at[k], b.at[k]);
-        }
-        return true;
-    }
-    if (!csg_blend_is_fold(node->join_blend) || !csg_blend_is_convex(node->join_blend))
+    if (!has_edge(blend) && !(csg_blend_is_fold(blend) && csg_blend_is_convex(blend)))
         return false;
-    double doubt = ROUNDING * spread_of(a, &b);
-    if (!is_convex) {
-        minorant corners = fold_at_corners(w, node, a, &b);
-        *a = lower(corners.at, doubt);
-        return true;
-    }
-    minorant best = tangent_of_fold(w, node, a, &b, mean_of(a), mean_of(&b));
-    uint32_t k = lowest_corner(&best);
-    minorant there = tangent_of_fold(w, node, a, &b, a->at[k], b.at[k]);
-    keep_higher(&best, &there);
-    *a = lower(best.at, doubt);
+    double doubt = has_edge(blend) ? 0 : ROUNDING * spread_of(a, &b);
+    minorant both = is_convex_here(w, node->join == CSG_JOIN_UNION) ? join_convex(w, node, a, &b)
+                                                                    : join_concave(w, node, a, &b);
+    *a = lower(both.at, doubt);
     return true;
 }
 
@@ -319,7 +338,7 @@ static bool walk_nodes(walk *w, uint32_t first, uint32_t count)
             join_round(w, node);
             known = true;
         }
-        if (!known || (node->join && !join(w, node)))
+        if (!known || (node->join && !join_operands(w, node)))
             return false;
     }
     return true;
