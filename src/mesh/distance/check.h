@@ -3,6 +3,9 @@
  * samples of it. Triangles are bisected until each piece, of centroid c and radius r, is settled by
  * one of these, with the tape pruned to the piece's neighbourhood:
  *
+ *   minorant an affine function below f is positive at the corners of the piece moved by -E n, n
+ *            being its normal, and one below -f at those of the piece moved by E n (minorant.h):
+ *            whatever its size, and what creases there are. The most pieces, and first
  *   cone     gradients in the ball of radius r + E around c have a direction v in common in which f
  *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so c + E v is
  *            inside and c - E v outside, for all of its points
@@ -13,7 +16,7 @@
  *            gradients' bounds, so pieces of the order of sqrt(E / curvature) are settled at once
  *   nearby   f changes its sign within E - r of c
  *
- * Where parts of a solid touch and are flush, cone and steps ask what stands for f (touching.h).
+ * Where parts of a solid touch and are flush, all but the last ask what stands for f (touching.h).
  *
  * Meshes that began with triangles of polyhedra are held against those (begun.h).
  *
