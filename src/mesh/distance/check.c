@@ -221,6 +221,15 @@ static csg_touching find_touching(const proof *p, const settler *s,
     return csg_touching_find(p->remesh->probe.marching->kernel, &s->tape, near[0].c, radius);
 }
 
+/* Leaves without faces turn slowly: what their gradients tell is as much, and costs less. */
+static bool has_faces(const csg_tape *tape)
+{
+    for (uint32_t i = 0; i < tape->count; i++)
+        if (tape->nodes[i].op == CSG_OP_SHAPE || csg_op_has(tape->nodes[i].op, CSG_TRAIT_FACES))
+            return true;
+    return false;
+}
+
 /* Whether all of a piece is inside a step against its normal (turn 1), or outside a step along it
  * (turn -1), of those of which it is asked. */
 static void keep_by_minorants(const proof *p, const csg_touching *field, const piece *const *pieces,
@@ -255,10 +264,11 @@ static void settle(const proof *p, settler *s, const piece *const *pieces, answe
     csg_steps steps[CSG_OCTANTS];
     answer *asking[CSG_OCTANTS];
     size_t asked = 0;
+    const bool faces = has_faces(&s->tape);
     for (size_t i = 0; i < count; i++) {
         const csg_vec3 *at = pieces[i]->at;
         looks[i].d = disc_of(at);
-        is_settled[i] = true; /* as far as is known */
+        is_settled[i] = faces; /* as far as is known */
         near[i] = (csg_gradients_region){{at[0], at[1], at[2]}, looks[i].d.center, p->error, 0};
     }
     const csg_touching field = find_touching(p, s, near, count);
