@@ -5,7 +5,7 @@
  *
  *   minorant an affine function below f is positive at the corners of the piece moved by -E n, n
  *            being its normal, and one below -f at those of the piece moved by E n (minorant.h):
- *            whatever its size, and what creases there are. The most pieces, and first
+ *            whatever its size, and what creases there are. Asked first where leaves have faces
  *   cone     gradients in the ball of radius r + E around c have a direction v in common in which f
  *            climbs by at least m, and |f| <= m E all over the piece (slopes.h): so c + E v is
  *            inside and c - E v outside, for all of its points
