@@ -52,6 +52,11 @@ static inline bool csg_op_has(uint8_t op, unsigned trait)
 {
     return csg_op_is_primitive(op) && csg_primitive_of(csg_op_node_kind(op))->traits & trait;
 }
+/* Whether it is a leaf whose gradient may jump from face to face. */
+static inline bool csg_op_has_faces(uint8_t op)
+{
+    return op == CSG_OP_SHAPE || csg_op_has(op, CSG_TRAIT_FACES);
+}
 static inline bool csg_op_is_leaf(uint8_t op)
 {
     return op < CSG_OP_UNION || op >= CSG_OP_EMPTY;

@@ -228,11 +228,6 @@ static bool add_placed(csg_cone_leaf *l, const csg_tape *tape, const csg_tape_no
     return csg_op_is_primitive(leaf->op) && add_primitive(l, csg_op_node_kind(leaf->op));
 }
 
-static bool has_faces(uint8_t op)
-{
-    return op == CSG_OP_SHAPE || csg_op_has(op, CSG_TRAIT_FACES);
-}
-
 bool csg_cone_add_leaf_in(csg_cone_balls *balls, const csg_tape *tape, const csg_tape_node *leaf,
                           const csg_cone_region *region)
 {
@@ -256,7 +251,7 @@ bool csg_cone_add_leaf_in(csg_cone_balls *balls, const csg_tape *tape, const csg
         return false;
     bool is_smooth = balls->count - first == 1 && before > 0 && l.bend < INFINITY;
     balls->bend = is_smooth ? l.norm * (l.rho / before) * l.bend * (1 + 1e-6) : INFINITY;
-    if (has_faces(leaf->op) && balls->count - first > 1)
+    if (csg_op_has_faces(leaf->op) && balls->count - first > 1)
         balls->corner = l.norm; /* in its own frame they are unit vectors */
     return !leaf->warp || csg_cone_unwarp(&way, balls, first);
 }

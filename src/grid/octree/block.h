@@ -34,7 +34,7 @@ typedef struct csg_block {
                            edges' axes; NULL: not known, as after sampling */
     const float *slopes; /* gradients there, three floats each; NULL: not all known */
     const float *ends;   /* values at the ends of crossed edges, point after point
-                            (csg_block_unpack_ends);   NULL: not kept */
+                            (csg_block_unpack_ends); NULL: not kept */
     uint32_t vertex_count, triangle_count;
     uint32_t first_vertex;
     uint64_t first_triangle;

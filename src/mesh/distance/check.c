@@ -225,7 +225,7 @@ static csg_touching find_touching(const proof *p, const settler *s,
 static bool has_faces(const csg_tape *tape)
 {
     for (uint32_t i = 0; i < tape->count; i++)
-        if (tape->nodes[i].op == CSG_OP_SHAPE || csg_op_has(tape->nodes[i].op, CSG_TRAIT_FACES))
+        if (csg_op_has_faces(tape->nodes[i].op))
             return true;
     return false;
 }
